@@ -20,7 +20,6 @@ from .effects.candidates import factors_of, lacking
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Problem
-from .likelihood.likelihood_numbers import EFFORT
 from .likelihood.map_fit import evaluate
 from .likelihood.request import Request as Request
 from .model_error.diffuse_fit import Judged
@@ -321,5 +320,4 @@ def _searcher(trial: _Trial) -> Searcher:
     both, columns = zip(made, factors, strict=True), small.columns
     coarse = tuple(first_places(c, f, columns, size) for c, f in both)
     beside = tuple(neighbourhoods(c, rows, size) for c, rows in zip(made, coarse, strict=True))
-    active = tuple(range(len(problem.prior.spread)))
-    return Searcher(small, coarse, active, null.nuisance, size, EFFORT, trial.judged, beside)
+    return Searcher(small, coarse, null.nuisance, size, trial.judged, beside)

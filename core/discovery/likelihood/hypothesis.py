@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import Floats, Ints
 from ...numerics.products import stacked_product
 from ...reduction.reduced_sum import ReducedSum
-from ..effects.candidates import Catalogue, Suspect
+from ..effects.candidates import Candidates, Catalogue, Suspect
 from ..effects.effect_laws import Law, Rows
 from ..reduction.search_basis import Basis
 from .frf_likelihood import Heard
@@ -89,6 +89,20 @@ class Problem:
         both = (of.spread, more.spread), (of.lower, more.lower), (of.upper, more.upper)
         prior = Prior(*(np.insert(a, len(a) - 1, b) for a, b in both))
         return replace(self, basis=replace(self.basis, stiffness=stiffness, mass=mass), prior=prior)
+
+    def with_kind(self, kind: int, new: Candidates, rows: Rows) -> Problem:
+        """Return the problem with candidates as one of the numbers of its catalogue.
+
+        `rows` are theirs on the basis, which lacks nothing that matters of them.
+        """
+        before, after = slice(kind), slice(kind + 1, None)
+        missing = (*self.missing[before], None, *self.missing[after]) if self.missing else ()
+        return replace(
+            self,
+            catalogue=(*self.catalogue[before], new, *self.catalogue[after]),
+            factors=(*self.factors[before], rows, *self.factors[after]),
+            missing=missing,
+        )
 
     def entire(self) -> Problem:
         """Return the problem with all of the test as evidence."""

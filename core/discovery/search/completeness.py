@@ -289,7 +289,7 @@ def _from_there(searcher: Searcher, tried: Sequence[Scored]) -> list[Scored]:
             assert s.judged is not None
             there = best.judged.fit.nuisance, s.judged.fit.suspects
             new = scored(searcher, evaluate(searcher.problem, *there), best)
-            if new.score > s.score + SEARCH.look_gain:
+            if new.score > s.score + SEARCH.likelier:
                 out[out.index(s)] = new
         out = ranked(searcher, (), out)
     return out
@@ -320,7 +320,7 @@ def _nearest(found: Found, k: int) -> list[Fit]:
 
     However much less these gain: beside an error of the model what fits worse may be likelier.
     """
-    return sorted(found.rivals[k], key=objective_of)[: SEARCH.rivals_judged]
+    return sorted(found.rivals[k], key=objective_of)[: SEARCH.rivals]
 
 
 def _led(found: Found, best: Fit) -> Found:

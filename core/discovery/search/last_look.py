@@ -44,7 +44,7 @@ def looked_again(searcher: Searcher, first: Scored, alone: float) -> tuple[Searc
     others = [s for s in tried if says_else(searcher, best.fit, s.fit)]
     apart = [s for s in others if _kinds(searcher, s.fit) != _kinds(searcher, best.fit)]
     near = needed(best.judged) if best.judged else 0.0
-    for field, within in ((others, near), (apart, SEARCH.rival_gain * (best.score - alone))):
+    for field, within in ((others, near), (apart, SEARCH.nearly * (best.score - alone))):
         if field and best.score - field[0].score < within:
             searcher, moved = _moved(searcher, field[0], tried)
             tried += moved
@@ -63,7 +63,7 @@ def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
         searcher.fitted(without, (*without.suspects, s), SEARCH.steps_new, soften=True)
         for _, s in branches[: SEARCH.look_fitted]
     ]
-    far = SEARCH.rival_gain * (without.objective - state.objective)
+    far = SEARCH.nearly * (without.objective - state.objective)
     close = [f for f in tried if f.objective - state.objective < far]
     return sorted(close, key=objective_of)[: SEARCH.look_judged]
 
@@ -80,7 +80,7 @@ def _other_kinds(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
     found: list[tuple[float, Suspect]] = []
     for kind, c in enumerate(searcher.problem.catalogue):
         away = np.linalg.norm(c.xyz - own.xyz[s.row], axis=1)
-        rows = np.flatnonzero(away < searcher.effort.near * searcher.size)
+        rows = np.flatnonzero(away < SEARCH.near * searcher.size)
         alike = c.kind is own.kind or c.kind.joins(own.kind) or c.law.acts_on != own.law.acts_on
         if alike or c.kind.late or not len(rows):
             continue
@@ -105,7 +105,7 @@ def _moved(
     out: list[Scored] = []
     seen = {_shape(searcher, s.fit) for s in known}
     paid = dict[int, float]()
-    for _ in range(SEARCH.look_moves):
+    for _ in range(SEARCH.rounds):
         before = best.score
         for q in range(len(best.fit.suspects)):
             c = searcher.problem.catalogue[best.fit.suspects[q].kind]
@@ -117,7 +117,7 @@ def _moved(
             now = paid | {q: float(np.log1p(len(fits)))} if gives(c) else paid
             out += (replace(s, score=s.score - sum(now.values())) for s in new)
             best, paid = first, paid if first is best else now
-        if best.score < before + SEARCH.look_gain:
+        if best.score < before + SEARCH.likelier:
             break
     return searcher, out
 

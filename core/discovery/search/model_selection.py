@@ -306,7 +306,7 @@ def _unmatched(
     twins on either side of a place.
     """
     catalogue = searcher.problem.catalogue
-    near = SEARCH.same_effect_apart * searcher.effort.apart * searcher.size
+    near = SEARCH.same_effect_apart * SEARCH.apart * searcher.size
 
     def same(s: Suspect, t: Suspect) -> bool:
         a, b = catalogue[s.kind], catalogue[t.kind]

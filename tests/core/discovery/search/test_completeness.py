@@ -175,7 +175,6 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False, size=1.0):
         problem=Some(catalogue=[kind], heard=None),
         coarse=[np.arange(100)],
         size=size,
-        effort=Some(apart=0.1),
         fitted=lambda f, suspects, _: hypothesis(f.objective, *(t.row for t in suspects)),
         judged=lambda _, f, __: gaining(evidence.get(tuple(s.row for s in f.suspects), 0.0)),
     )
