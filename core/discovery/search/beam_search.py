@@ -40,7 +40,7 @@ def grown(
             break
         progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
         found: list[Fit] = []
-        among = searcher.coarse
+        among, vain = searcher.coarse, False
         for state in beam:
             small, here = searcher.local(state)
             soft = evaluate(softened(small), here.nuisance, here.suspects).objective
@@ -49,13 +49,14 @@ def grown(
             for branch in _varied(searcher, scanned.best, soft):
                 wider = (*state.suspects, branch)
                 found.append(searcher.fitted(state, wider, SEARCH.steps_new, soften=True))
-            best = min(found, key=objective_of)
-            if depth > 1 and hopeless(searcher, levels[-1], best):
+            found.sort(key=objective_of)
+            vain = depth > 1 and bool(found) and hopeless(searcher, levels[-1], found[0])
+            if vain:
                 break
-        chosen = _distinct(searcher, sorted(found, key=objective_of))
-        if not chosen:
+        if not found:
             break
-        if depth > 1 and hopeless(searcher, levels[-1], chosen[0]):
+        chosen = _distinct(searcher, found)
+        if vain:
             levels.append(chosen[0])
             rivals.append(tuple(chosen[1 : SEARCH.rivals]))
             break

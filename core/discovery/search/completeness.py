@@ -251,7 +251,7 @@ def _centred(
         if gives(c):
             continue
         places = credible_places(searcher, best.fit, q)
-        for _ in range(SEARCH.middle_rounds if c.kind.at_points else 0):
+        for _ in range(SEARCH.turns if c.kind.at_points else 0):
             s = places[middle(c, places)].suspect
             if s.row == best.fit.suspects[q].row:
                 break

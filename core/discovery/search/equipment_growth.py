@@ -175,7 +175,7 @@ def _standing(r: _Replaced, place: Place, best: Judged) -> tuple[Searcher, Score
     (template, feet), q, size = place, r.number, r.searcher.size
     kind = len(r.searcher.problem.catalogue)
     wide = r.searcher.with_kind(kind, loose(template, feet, size))
-    for _ in range(SEARCH.equipment_rounds):
+    for _ in range(SEARCH.turns):
         state = evaluate(wide.problem, best.fit.nuisance, best.fit.suspects)
         found = wide.judged(wide.problem, state, np.inf)
         if found is None or found.evidence < best.evidence + SEARCH.better:

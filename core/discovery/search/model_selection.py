@@ -50,13 +50,6 @@ def side_by_side(searcher: Searcher, f: Fit) -> list[tuple[int, int]]:
     return [(j, i) for i, j in found.items()]
 
 
-def _bodies(searcher: Searcher, f: Fit) -> float:
-    """Return what the choice of the bodies of equipment cost, ln of a probability."""
-    catalogue = searcher.problem.catalogue
-    known = (grown(catalogue[s.kind], s.row) for s in f.suspects)
-    return sum(c.paid for c in known if c)
-
-
 def chosen(searcher: Searcher, found: Found) -> int:
     """Return the number of suspects that earn their place, see `kept`, or that may yet.
 
@@ -105,10 +98,12 @@ class Scored:
 def scored(searcher: Searcher, f: Fit, best: Scored | None = None) -> Scored:
     """Return a hypothesis with its evidence, less ln of the number of choices it had.
 
-    Where the `best` is so far ahead that it does not matter, smooth fields are not tried.
+    Of bodies of equipment that is known. Where the `best` is so far ahead that it does not matter,
+    smooth fields are not tried.
     """
     paid = sum(float(np.log(choices(searcher, s))) for s in f.suspects)
-    paid += _bodies(searcher, f)
+    bodies = (grown(searcher.problem.catalogue[s.kind], s.row) for s in f.suspects)
+    paid += sum(body.paid for body in bodies if body)
     least = -np.inf
     if best and best.judged:
         least = best.score - needed(best.judged) + paid

@@ -75,13 +75,8 @@ def searched(
 
 
 def _likelier(searcher: Searcher, *ways: Found) -> Found:
-    """Return the likelier of two outcomes with the levels of the other among its rivals."""
+    """Return the likelier of two outcomes with the hypotheses of the other among its rivals."""
     other, found = sorted(ways, key=lambda way: _evidence(searcher, way))
-    return _beside_others(found, other)
-
-
-def _beside_others(found: Found, other: Found) -> Found:
-    """Return an outcome with the hypotheses of another among its rivals."""
     levels = len(found.rivals)
     others = (f for level in other.rivals[:levels] for f in level)
     return found.with_rivals((*other.levels[1:levels], *others))

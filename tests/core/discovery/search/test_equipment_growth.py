@@ -54,7 +54,7 @@ def searching(request):
     """The search by all twelve modes and all sensors."""
     modes, sensors = np.zeros(12, bool), np.zeros(len(request.placed.observation), bool)
     ground = ground_of(request, ~modes)
-    return core._searcher(core._Trial(request, ground, sensors, 0.01, modes, sensors))
+    return core._searcher(core._Trial(request, ground, sensors, 0.01, (modes, sensors)))
 
 
 def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch):
