@@ -20,7 +20,6 @@ from .effects.candidates import factors_of, lacking
 from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Problem
-from .likelihood.likelihood_numbers import EFFORT
 from .likelihood.map_fit import evaluate
 from .likelihood.request import Request as Request
 from .model_error.diffuse_fit import Judged
@@ -70,29 +69,27 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     progress("checking the sensors against each other")
     bench = Bench(request.placed, request.structure.model)
     test = bench.survey
-    modes_out = held_out(*DISCOVERY.modes_held, DISCOVERY.modes_enough, test.frequencies_hz)
-    sensors_out = held_out(
-        *DISCOVERY.sensors_held, DISCOVERY.sensors_enough, test.component, test.node
+    out = (
+        held_out(*DISCOVERY.modes_held, DISCOVERY.modes_enough, test.frequencies_hz),
+        held_out(*DISCOVERY.sensors_held, DISCOVERY.sensors_enough, test.component, test.node),
     )
     progress("making the catalogue of effects")
-    ground = ground_of(request, ~modes_out)
+    ground = ground_of(request, ~out[0])
     progress("fitting the known parameters")
-    trial = _tried(request, bench, ground, modes_out, sensors_out)
-    bench, trial = _dashpot_off(request, bench, trial, (modes_out, sensors_out))
+    bench, trial = _dashpot_off(request, bench, _tried(request, bench, ground, out))
     searcher, found, accepted = _searched(trial, progress)
     if accepted:
         tested = _judged(bench, trial, searcher, found.levels[accepted])
         if np.any(tested.accused & ~trial.aside):
             progress("searching again without sensors that the completed model accuses")
             aside = trial.aside | tested.doubtful
-            trial = _Trial(trial.asked, ground, aside, tested.noise, modes_out, sensors_out)
+            trial = _Trial(trial.asked, ground, aside, tested.noise, out)
             searcher, found, accepted = _searched(trial, progress)
     progress("weighing what was found against the error of the model")
     searcher, found, accepted, whole = _completed(trial, searcher, found, accepted)
     best = found.levels[accepted]
     tested = _judged(bench, trial, searcher, best)
     known = for_deck(trial.own, searcher.problem, best)
-    out = modes_out, sensors_out
     said = build_discovery(request, searcher, found, accepted, whole, known, tested, out)
     progress("weighing dashpots by the measured damping")
     best = evaluate(searcher.problem, best.nuisance, best.suspects)
@@ -105,23 +102,19 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     return with_responses(searcher.problem, found.levels[0].nuisance, best, said)
 
 
-def _tried(
-    request: Request, bench: Bench, ground: Deck, modes_out: Bools, sensors_out: Bools
-) -> _Trial:
+def _tried(request: Request, bench: Bench, ground: Deck, out: tuple[Bools, Bools]) -> _Trial:
     """Fit the known parameters without the sensors that look faulty."""
     motion = np.asarray(request.structure.model.expansion @ request.solution.vectors)
     first = bench.judged(motion, request.solution.eigenvalues)
-    trial = _Trial(request, ground, first.doubtful, first.noise, modes_out, sensors_out)
+    trial = _Trial(request, ground, first.doubtful, first.noise, out)
     basis, null = trial.problem.basis, trial.null
     tested = bench.judged(basis.motion @ null.vectors[: basis.size], null.eigenvalues)
     if np.any(tested.doubtful != first.doubtful):
-        return _Trial(request, ground, tested.doubtful, tested.noise, modes_out, sensors_out)
+        return _Trial(request, ground, tested.doubtful, tested.noise, out)
     return trial
 
 
-def _dashpot_off(
-    request: Request, bench: Bench, trial: _Trial, held: tuple[Bools, Bools]
-) -> tuple[Bench, _Trial]:
+def _dashpot_off(request: Request, bench: Bench, trial: _Trial) -> tuple[Bench, _Trial]:
     """Take a heavy dashpot off the test where the model then fits better, else leave it.
 
     It moves frequencies and shapes, which a search for stiffness and mass would put down to such.
@@ -133,7 +126,7 @@ def _dashpot_off(
             break
         other = replace(request, placed=taken_off(w, request.placed, trial.problem))
         its_bench = Bench(other.placed, request.structure.model)
-        without = _tried(other, its_bench, trial.ground, *held)
+        without = _tried(other, its_bench, trial.ground, trial.out)
         if without.null.objective >= trial.null.objective:
             break
         bench, trial = its_bench, without
@@ -148,7 +141,7 @@ def _at_supports(placed: Placed, structure: Structure) -> sp.csr_matrix:
 
 
 class _Trial:
-    """A search without the sensors that are set aside."""
+    """A search without the sensors that are set aside; modes and sensors are held `out` of it."""
 
     def __init__(
         self,
@@ -156,15 +149,12 @@ class _Trial:
         ground: Deck,
         aside: Bools,
         noise: float,
-        modes_out: Bools,
-        sensors_out: Bools,
+        out: tuple[Bools, Bools],
     ) -> None:
-        self.asked, self.ground, self.aside = request, ground, aside
+        self.asked, self.ground, self.aside, self.out = request, ground, aside, out
         self.request = replace(request, placed=request.placed.take(~aside))
-        sensors = ~sensors_out[~aside]
-        self.problem, self.null, self.zero = prepared(
-            self.request, ground, noise, ~modes_out, sensors
-        )
+        sensors = ~out[1][~aside]
+        self.problem, self.null, self.zero = prepared(self.request, ground, noise, ~out[0], sensors)
         placed, structure = self.request.placed, request.structure
         motion = placed.observation.matrix @ structure.model.expansion
         observation = sp.csr_matrix(placed.weighted(motion))
@@ -313,13 +303,14 @@ def _searcher(trial: _Trial) -> Searcher:
     request, problem, null = trial.request, trial.problem, trial.null
     made, size = trial.ground.catalogue, request.structure.model.geometry.size
     small = problem.turned(null.vectors)
-    small = replace(small, modes=min(DISCOVERY.small_modes, small.basis.size))
     lost = Lost(trial.ground.compliance, small.basis.vectors)
     missing = tuple(lacking(c, lost) for c in made)
     factors = factors_of(made, small.basis)
-    small = replace(small, catalogue=tuple(made), factors=factors, missing=missing, turn=None)
+    modes = min(DISCOVERY.small_modes, small.basis.size)
+    small = replace(
+        small, catalogue=tuple(made), factors=factors, missing=missing, modes=modes, turn=None
+    )
     both, columns = zip(made, factors, strict=True), small.columns
     coarse = tuple(first_places(c, f, columns, size) for c, f in both)
     beside = tuple(neighbourhoods(c, rows, size) for c, rows in zip(made, coarse, strict=True))
-    active = tuple(range(len(problem.prior.spread)))
-    return Searcher(small, coarse, active, null.nuisance, size, EFFORT, trial.judged, beside)
+    return Searcher(small, coarse, null.nuisance, size, trial.judged, beside)

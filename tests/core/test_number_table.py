@@ -103,7 +103,6 @@ def test_every_number_has_unit_meaning_and_source() -> None:
         "dampers",
         "discovery",
         "effects",
-        "effort",
         "likelihood",
         "narrative",
         "search",
@@ -122,7 +121,7 @@ def test_every_number_of_a_table_is_used() -> None:
     code = "".join(p.read_text(encoding="utf-8") for p in (ROOT / "core").rglob("*.py"))
     for room, table in tables().items():
         for f in fields(table):
-            assert f"{room.upper()}.{f.name}" in code or f"effort.{f.name}" in code, f.name
+            assert f"{room.upper()}.{f.name}" in code, f.name
 
 
 def test_a_number_times_a_factor_is_another_number() -> None:

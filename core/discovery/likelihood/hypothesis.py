@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import Floats, Ints
 from ...numerics.products import stacked_product
 from ...reduction.reduced_sum import ReducedSum
-from ..effects.candidates import Catalogue, Suspect
+from ..effects.candidates import Candidates, Catalogue, Suspect
 from ..effects.effect_laws import Law, Rows
 from ..reduction.search_basis import Basis
 from .frf_likelihood import Heard
@@ -90,6 +90,20 @@ class Problem:
         prior = Prior(*(np.insert(a, len(a) - 1, b) for a, b in both))
         return replace(self, basis=replace(self.basis, stiffness=stiffness, mass=mass), prior=prior)
 
+    def with_kind(self, kind: int, new: Candidates, rows: Rows) -> Problem:
+        """Return the problem with candidates as one of the numbers of its catalogue.
+
+        `rows` are theirs on the basis, which lacks nothing that matters of them.
+        """
+        before, after = slice(kind), slice(kind + 1, None)
+        missing = (*self.missing[before], None, *self.missing[after]) if self.missing else ()
+        return replace(
+            self,
+            catalogue=(*self.catalogue[before], new, *self.catalogue[after]),
+            factors=(*self.factors[before], rows, *self.factors[after]),
+            missing=missing,
+        )
+
     def entire(self) -> Problem:
         """Return the problem with all of the test as evidence."""
         return replace(self, evidence=self.whole, sensors=self.everywhere)
@@ -153,6 +167,14 @@ class Fit:
     def log_p(self) -> Floats:
         """Return ln p of the known parameters, (n_parameter,)."""
         return self.nuisance[:-1]
+
+    def others(self, q: int) -> tuple[Suspect, ...]:
+        """Return all suspects but one."""
+        return self.suspects[:q] + self.suspects[q + 1 :]
+
+    def instead(self, q: int, new: Suspect) -> tuple[Suspect, ...]:
+        """Return the suspects with another in place of one."""
+        return (*self.suspects[:q], new, *self.suspects[q + 1 :])
 
 
 def softened(problem: Problem) -> Problem:

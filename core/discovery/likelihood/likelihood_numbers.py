@@ -1,24 +1,8 @@
-"""The tuned numbers of the likelihood, and how wide a search looks."""
+"""The tuned numbers of the likelihood."""
 
 from dataclasses import dataclass
 
 from ...number_table import ROUNDING, number
-
-SIZE = "of the structure's size"
-
-
-@dataclass(frozen=True)
-class Effort:
-    beam: int = number(3, "hypotheses", "that are grown at once")
-    branches: int = number(4, "suspects", "that are fitted beside each of them")
-    looked_at: int = number(4, "places", "of the first scan around which neighbours are scanned")
-    around: int = number(16, "places", "scanned around each of them, at most")
-    neighbours: int = number(96, "places", "that a suspect may move to at once, at most")
-    of_each_kind: int = number(1, "suspects", "of a kind that are fitted, whatever the others gain")
-    most: int = number(4, "suspects", "of a hypothesis, at most")
-    search_modes: int = number(40, "modes", "of a hypothesis on which places are scanned")
-    apart: float = number(0.08, SIZE, "suspects of one kind are at least so far apart")
-    near: float = number(0.12, SIZE, "how far a suspect moves at once")
 
 
 @dataclass(frozen=True)
@@ -59,4 +43,4 @@ class LikelihoodNumbers:
     band_above: float = number(1.05, "of the highest test frequency", "up to which they do")
 
 
-EFFORT, LIKELIHOOD = Effort(), LikelihoodNumbers()
+LIKELIHOOD = LikelihoodNumbers()

@@ -35,39 +35,40 @@ def grown(
     levels = [*first] or [searcher.settled(searcher.null())]
     rivals: list[tuple[Fit, ...]] = [() for _ in levels]
     beam = [*levels[-1:], *([] if first else _as_the_deck(searcher, levels[0]))]
-    for depth in range(len(levels), searcher.effort.most + 1):
+    for depth in range(len(levels), SEARCH.most + 1):
         if explains(levels[-1]):
             break
         progress(f"looking for {depth} missing effect{'s' if depth > 1 else ''}")
         found: list[Fit] = []
-        among = searcher.coarse
+        among, vain = searcher.coarse, False
         for state in beam:
             small, here = searcher.local(state)
             soft = evaluate(softened(small), here.nuisance, here.suspects).objective
-            scanned = searcher.scanned(state, searcher.effort.branches, among)
+            scanned = searcher.scanned(state, SEARCH.branches, among)
             among = scanned.live if depth > 1 and state is beam[0] else among
             for branch in _varied(searcher, scanned.best, soft):
                 wider = (*state.suspects, branch)
-                found.append(searcher.fitted(state, wider, SEARCH.steps_new, small, True))
-            best = min(found, key=objective_of)
-            if depth > 1 and hopeless(searcher, levels[-1], best):
+                found.append(searcher.fitted(state, wider, SEARCH.steps_new, soften=True))
+            found.sort(key=objective_of)
+            vain = depth > 1 and bool(found) and hopeless(searcher, levels[-1], found[0])
+            if vain:
                 break
-        chosen = _distinct(searcher, sorted(found, key=objective_of))
-        if not chosen:
+        if not found:
             break
-        if depth > 1 and hopeless(searcher, levels[-1], chosen[0]):
+        chosen = _distinct(searcher, found)
+        if vain:
             levels.append(chosen[0])
-            rivals.append(tuple(chosen[1 : SEARCH.rivals_kept]))
+            rivals.append(tuple(chosen[1 : SEARCH.rivals]))
             break
         base = beam[0].objective
-        followed = chosen[: searcher.effort.beam - (depth > 1)]
+        followed = chosen[: SEARCH.beam - (depth > 1)]
         beam = sorted(map(searcher.settled, map(searcher.refined, followed)), key=objective_of)
         if depth > 1:
             beam[0] = searcher.moved_at_once(searcher.reconsidered(beam[0]))
         beam = _distinct(searcher, sorted(beam, key=objective_of))
         best = next((f for f in beam if depth > 1 and explains(f)), beam[0])
-        rest = (*(f for f in beam if f is not best), *chosen[searcher.effort.beam :])
-        rivals.append(rest[: SEARCH.rivals_kept])
+        rest = (*(f for f in beam if f is not best), *chosen[SEARCH.beam :])
+        rivals.append(rest[: SEARCH.rivals])
         previous = levels[-1]
         levels.append(best)
         if enough(searcher, previous, best):
@@ -93,15 +94,15 @@ def _as_the_deck(searcher: Searcher, null: Fit) -> list[Fit]:
 
 
 def _distinct(searcher: Searcher, fits: Sequence[Fit]) -> list[Fit]:
-    near = SEARCH.same_place * searcher.effort.apart * searcher.size
+    near = SEARCH.same_place * SEARCH.apart * searcher.size
     return distinct(fits, searcher.problem.catalogue, near)
 
 
 def _near(searcher: Searcher, fits: Sequence[Fit], base: float) -> list[Fit]:
     """Return the best and the next few that gained nearly as much over `base`."""
-    near = fits[0].objective + SEARCH.grown_too * (base - fits[0].objective)
+    near = fits[0].objective + SEARCH.nearly * (base - fits[0].objective)
     close = [f for f in fits if f is fits[0] or f.objective < near]
-    return close[: searcher.effort.beam - 1]
+    return close[: SEARCH.beam - 1]
 
 
 def _varied(
@@ -120,9 +121,6 @@ def _varied(
         if base - score < SEARCH.worth_fitting * (base - best) and kept:
             continue
         number[kind] += 1
-        if (
-            number.total() <= searcher.effort.branches
-            or number[kind] <= searcher.effort.of_each_kind
-        ):
+        if number.total() <= SEARCH.branches or number[kind] == 1:
             kept.append(s)
     return kept

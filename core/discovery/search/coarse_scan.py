@@ -268,7 +268,7 @@ def _misfit(
     `at_sensors` are products of test shapes with modes (n_test, r), and of modes (r, r).
     """
     aim, (cross, gram) = targets(e), at_sensors
-    tests, tiny = np.arange(len(aim)), SEARCH.resonance * aim[:, None]
+    tests, tiny = np.arange(len(aim)), SEARCH.nil * aim[:, None]
     gap = lam - aim[:, None]
     gap = np.where(np.abs(gap) < tiny, tiny, gap)
     best = np.full(flexibility.shape, np.inf)

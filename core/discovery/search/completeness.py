@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import islice, permutations
+from itertools import permutations
 
 import numpy as np
 
@@ -24,13 +24,12 @@ from ..model_error.held_out import agreement, foretold
 from ..model_error.model_error_numbers import MODEL_ERROR
 from ..model_error.support_reach import Reach
 from .credible_places import Place, alike, credible_places, middle
-from .found import Found
+from .found import Found, objective_of
 from .last_look import looked_again
 from .model_selection import (
     Scored,
     adequacy_of,
     by_such_a_test,
-    contenders,
     kept,
     needed,
     ranked,
@@ -214,8 +213,7 @@ def completeness(
     number = kept(searcher, levels)
     best, told, places = _centred(searcher, levels[number], fields[number])
     found = _led(found, told.fit)
-    others = contenders(searcher, found, number)
-    rivals = [s for s in fields[number] if any(s.fit is f for f in others)]
+    rivals = [s for s in fields[number] if says_else(searcher, told.fit, s.fit)]
     ahead = float(best.score - max((s.score for s in rivals), default=-np.inf))
     assert best.judged is not None
     assert told.judged is not None
@@ -253,12 +251,12 @@ def _centred(
         if gives(c):
             continue
         places = credible_places(searcher, best.fit, q)
-        for _ in range(SEARCH.middle_rounds if c.kind.at_points else 0):
-            s, suspects = places[middle(c, places)].suspect, best.fit.suspects
-            if s.row == suspects[q].row:
+        for _ in range(SEARCH.turns if c.kind.at_points else 0):
+            s = places[middle(c, places)].suspect
+            if s.row == best.fit.suspects[q].row:
                 break
-            moved = (*suspects[:q], s, *suspects[q + 1 :])
-            new = scored(searcher, searcher.fitted(best.fit, moved, SEARCH.steps_new))
+            moved = searcher.fitted(best.fit, best.fit.instead(q, s), SEARCH.steps_new)
+            new = scored(searcher, moved)
             if 2.0 * (best.score - new.score) > SEARCH.credible:
                 break
             best = new
@@ -291,7 +289,7 @@ def _from_there(searcher: Searcher, tried: Sequence[Scored]) -> list[Scored]:
             assert s.judged is not None
             there = best.judged.fit.nuisance, s.judged.fit.suspects
             new = scored(searcher, evaluate(searcher.problem, *there), best)
-            if new.score > s.score + SEARCH.look_gain:
+            if new.score > s.score + SEARCH.likelier:
                 out[out.index(s)] = new
         out = ranked(searcher, (), out)
     return out
@@ -322,8 +320,7 @@ def _nearest(found: Found, k: int) -> list[Fit]:
 
     However much less these gain: beside an error of the model what fits worse may be likelier.
     """
-    rivals = sorted(found.rivals[k], key=lambda f: f.objective)
-    return list(islice((f for f in rivals if len(f.suspects) == k), SEARCH.rivals_judged))
+    return sorted(found.rivals[k], key=objective_of)[: SEARCH.rivals]
 
 
 def _led(found: Found, best: Fit) -> Found:

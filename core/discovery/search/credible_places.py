@@ -9,7 +9,7 @@ from ...arrays import Floats
 from ..effects.candidates import Candidates, Suspect
 from ..effects.element_patches import gives
 from ..likelihood.hypothesis import Fit
-from ..likelihood.map_fit import evaluate, fit
+from ..likelihood.map_fit import fit
 from .exact_scan import scan
 from .found import noise_scale
 from .model_selection import Scored
@@ -33,12 +33,11 @@ def credible_places(searcher: Searcher, best: Fit, number: int) -> list[Place]:
     best are kept.
     """
     suspect, scale = best.suspects[number], noise_scale(searcher.problem, best)
-    before, after = best.suspects[:number], best.suspects[number + 1 :]
     c = searcher.problem.catalogue[suspect.kind]
     away = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)
     near = np.flatnonzero(away < SEARCH.credible_near * searcher.size)[: SEARCH.credible_most]
     rows = np.union1d(np.union1d(searcher.coarse[suspect.kind], near), [suspect.row])
-    small, here = searcher.local(evaluate(searcher.problem, best.nuisance, (*before, *after)))
+    small, here = searcher.without(best, number)
     trials = c.around(suspect.theta, np.array(SEARCH.credible_sizes))
     score = scan(small, here, suspect.kind, rows, trials)
     order = np.argsort(score.min(axis=1), kind="stable")[: SEARCH.credible_fitted]
@@ -47,7 +46,7 @@ def credible_places(searcher: Searcher, best: Fit, number: int) -> list[Place]:
     vain = 0
     for i in [*own, *order[order != own[0]]]:
         moved = Suspect(suspect.kind, int(rows[i]), tuple(trials[score[i].argmin()]))
-        suspects = (*before, moved, *after)
+        suspects = best.instead(number, moved)
         tried.append(fit(small, best.nuisance, suspects, searcher.active, SEARCH.credible_steps))
         least = min(f.objective for f in tried)
         vain = 0 if tried[-1].objective - least < SEARCH.credible * scale else vain + 1

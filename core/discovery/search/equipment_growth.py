@@ -41,14 +41,6 @@ class _Replaced:
     number: int
 
 
-@dataclass(frozen=True, eq=False)
-class _Standing:
-    """Equipment in place of a mass: the search that knows it, the hypothesis with it."""
-
-    searcher: Searcher
-    scored: Scored
-
-
 def equipped(structure: Structure, searcher: Searcher, state: Fit) -> tuple[Searcher, Fit]:
     """Return a hypothesis whose masses have offset and inertia, and a searcher that knows them.
 
@@ -58,14 +50,14 @@ def equipped(structure: Structure, searcher: Searcher, state: Fit) -> tuple[Sear
         c = searcher.problem.catalogue[s.kind]
         if c.kind is tuned_absorber.KIND or c.kind.joins(point_mass.KIND):
             better, now = _best(structure, _Replaced(searcher, state, q)), scored(searcher, state)
-            if better and _instead(better.scored, now, stood=grown(c, s.row) is not None):
-                searcher, state = better.searcher, better.scored.fit
+            if better and _instead(better[1], now, stood=grown(c, s.row) is not None):
+                searcher, state = better[0], better[1].fit
     return searcher, state
 
 
 def _instead(better: Scored, now: Scored, *, stood: bool) -> bool:
     """Whether a body takes the place of a mass that stood on its own, or of another body."""
-    return better.score > now.score + SEARCH.look_gain if stood else earned(better, now)
+    return better.score > now.score + SEARCH.likelier if stood else earned(better, now)
 
 
 def as_blocks(
@@ -86,9 +78,10 @@ def as_blocks(
         if feet:
             body = block(float(np.exp(s.theta[0])), density)
             made = equipment(c, feet[0], [body], mount)
-            searcher, kind = _with(searcher, made), len(searcher.problem.catalogue)
+            kind = len(searcher.problem.catalogue)
+            searcher = searcher.with_kind(kind, made)
             new = Suspect(kind, 0, tuple(made.like(s.theta[:1]).tolist()))
-            suspects = (*state.suspects[:q], new, *state.suspects[q + 1 :])
+            suspects = state.instead(q, new)
             if mount is None:
                 state = searcher.fitted(state, suspects, SEARCH.steps_moved)
             else:
@@ -100,21 +93,17 @@ def _at_point(c: Candidates) -> bool:
     return c.kind is point_mass.KIND and bool(c.rows_each) and not isinstance(c, Equipment)
 
 
-def _best(structure: Structure, r: _Replaced) -> _Standing | None:
-    """Return the best equipment in place of a mass, None where none can stand there.
+def _best(structure: Structure, r: _Replaced) -> tuple[Searcher, Scored] | None:
+    """Return the best with equipment in place of a mass, and a searcher that knows it.
 
-    Of those that have climbed once the likeliest climb on.
+    None where none can stand there. Of those that have climbed once the likeliest climb on.
     """
     s = r.state.suspects[r.number]
     places = _places(structure, r.searcher, s)
     first = [(place, j) for place in places for j in [_climbed(r, place)] if j is not None]
     first.sort(key=lambda one: one[1].evidence, reverse=True)
     found = (_standing(r, *one) for one in first[: SEARCH.equipment_tried])
-    return max(found, key=_score, default=None)
-
-
-def _score(s: _Standing) -> float:
-    return s.scored.score
+    return max(found, key=lambda one: one[1].score, default=None)
 
 
 def _places(structure: Structure, searcher: Searcher, s: Suspect) -> list[Place]:
@@ -152,14 +141,13 @@ def _feet(structure: Structure, c: Candidates, row: int) -> list[list[Stand]]:
 def _start(r: _Replaced, place: Place) -> tuple[float, Body]:
     """Return ln of the mass and the body at a place that promise most, all else as it stands."""
     template, feet = place
-    suspects, q = r.state.suspects, r.number
     bodies = _upright(feet[0], r.searcher.size)
     made = equipment(template, feet, bodies)
-    wide, kind = _with(r.searcher, made), len(r.searcher.problem.catalogue)
-    others = suspects[:q] + suspects[q + 1 :]
-    small, here = wide.local(evaluate(wide.problem, r.state.nuisance, others))
+    kind = len(r.searcher.problem.catalogue)
+    wide = r.searcher.with_kind(kind, made)
+    small, here = wide.without(r.state, r.number)
     sizes = np.array(SEARCH.equipment_sizes)
-    trials = made.around(made.like(suspects[q].theta).tolist(), sizes)
+    trials = made.around(made.like(r.state.suspects[r.number].theta).tolist(), sizes)
     hopes = scan(small, here, kind, np.arange(len(made)), trials) + made.surprise(trials)
     row, size = np.unravel_index(hopes.argmin(), hopes.shape)
     return float(trials[size][0]), bodies[row]
@@ -171,33 +159,34 @@ def _climbed(r: _Replaced, place: Place) -> Judged | None:
     None where no model with it solves.
     """
     mass, body = _start(r, place)
-    size, suspects, q = r.searcher.size, r.state.suspects, r.number
-    wide, kind = _with(r.searcher, loose(*place, size)), len(r.searcher.problem.catalogue)
+    size = r.searcher.size
+    kind = len(r.searcher.problem.catalogue)
+    wide = r.searcher.with_kind(kind, loose(*place, size))
     new = Suspect(kind, 0, theta_of(mass, body, size))
-    both = (*suspects[:q], new, *suspects[q + 1 :])
-    state = evaluate(wide.problem, r.state.nuisance, both)
+    state = evaluate(wide.problem, r.state.nuisance, r.state.instead(r.number, new))
     return wide.judged(wide.problem, state, np.inf)
 
 
-def _standing(r: _Replaced, place: Place, best: Judged) -> _Standing:
+def _standing(r: _Replaced, place: Place, best: Judged) -> tuple[Searcher, Scored]:
     """Return equipment at a place as the test is likeliest, climbed on from where it is.
 
     On the modes of a start a body is moved only so far: so again from there.
     """
     (template, feet), q, size = place, r.number, r.searcher.size
-    wide = _with(r.searcher, loose(template, feet, size))
-    for _ in range(SEARCH.equipment_rounds):
+    kind = len(r.searcher.problem.catalogue)
+    wide = r.searcher.with_kind(kind, loose(template, feet, size))
+    for _ in range(SEARCH.turns):
         state = evaluate(wide.problem, best.fit.nuisance, best.fit.suspects)
         found = wide.judged(wide.problem, state, np.inf)
         if found is None or found.evidence < best.evidence + SEARCH.better:
             break
         best = found
-    suspects = best.fit.suspects
-    made = equipment(template, feet, [body_of(suspects[q].theta, size)], paid=_paid(best, q))
-    new = Suspect(suspects[q].kind, 0, tuple(made.like(suspects[q].theta[:1]).tolist()))
-    both = (*suspects[:q], new, *suspects[q + 1 :])
-    wide = _with(r.searcher, made)
-    return _Standing(wide, scored(wide, evaluate(wide.problem, best.fit.nuisance, both)))
+    s = best.fit.suspects[q]
+    made = equipment(template, feet, [body_of(s.theta, size)], paid=_paid(best, q))
+    new = Suspect(kind, 0, tuple(made.like(s.theta[:1]).tolist()))
+    wide = r.searcher.with_kind(kind, made)
+    stood = evaluate(wide.problem, best.fit.nuisance, best.fit.instead(q, new))
+    return wide, scored(wide, stood)
 
 
 def _paid(best: Judged, q: int) -> float:
@@ -217,15 +206,3 @@ def _upright(s: Stand, size: float) -> list[Body]:
     heights = SEARCH.equipment_heights if s.sheet else ()
     off = [0.0, *(way * h * size for h in heights for way in (1.0, -1.0))]
     return [ball(h * s.axes[0], SEARCH.equipment_radius * size) for h in off]
-
-
-def _with(searcher: Searcher, made: Candidates) -> Searcher:
-    """Return the search with further candidates."""
-    p = searcher.problem
-    problem = replace(
-        p,
-        catalogue=(*p.catalogue, made),
-        factors=(*p.factors, made.factors(p.basis)),
-        missing=(*p.missing, None) if p.missing else (),
-    )
-    return replace(searcher, problem=problem, coarse=(*searcher.coarse, np.zeros(0, np.int64)))

@@ -61,7 +61,7 @@ def _changed(lam: Floats, added: Floats, on: str) -> tuple[Floats, Floats]:
     """
     if on == "K":
         return tuple(np.linalg.eigh(added + np.diag(lam)))  # type: ignore[return-value]
-    shift = max(SEARCH.pencil_shift * lam[-1] - lam[0], 0.0)
+    shift = max(SEARCH.nil * lam[-1] - lam[0], 0.0)
     root = 1.0 / np.sqrt(lam + shift)
     e, Y = np.linalg.eigh(added * (root * root[:, None]) + np.diag(root**2))
     values = 1.0 / e[:, ::-1]

@@ -19,7 +19,7 @@ from scipy.spatial import Delaunay, QhullError, cKDTree
 from ...arrays import Bools, Floats, Ints
 from ..effects import distributed_mass, point_mass
 from ..effects.candidates import Candidates, Suspect, places_of, together
-from ..effects.effect_laws import Law, MassLaw, Rows
+from ..effects.effect_laws import Law, MassLaw
 from ..effects.element_patches import Patch, PatchCandidates
 from ..effects.structure_points import translations
 from ..likelihood.hypothesis import Fit
@@ -124,7 +124,7 @@ def footed(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Search
         around = surroundings_of_each(structure, c, s.row) if own else ()
         if own and around:
             s = Suspect(len(searcher.problem.catalogue), 0, (s.theta[0], *SEARCH.foot[0]))
-            searcher = with_kind(searcher, s.kind, _free(structure, own, around))
+            searcher = searcher.with_kind(s.kind, _free(structure, own, around))
         suspects.append(s)
     return searcher, replace(state, suspects=tuple(suspects))
 
@@ -143,7 +143,7 @@ def settled(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Searc
             wide = not more and around.radius(theta) > SEARCH.spread_mass * searcher.size
             patched = _spread(searcher, structure, around, theta) if wide else None
             if patched is None:
-                searcher = with_kind(searcher, s.kind, _disc(structure, c, c.law.around, theta))
+                searcher = searcher.with_kind(s.kind, _disc(structure, c, c.law.around, theta))
             else:
                 searcher, kind = patched
                 s = replace(s, kind=kind, row=len(searcher.problem.catalogue[kind]) - 1)
@@ -156,7 +156,7 @@ def _spread(
 ) -> tuple[Searcher, int] | None:
     """Put the elements of a disc among the places of spread masses; None where there are none."""
     kinds = [
-        (number, c)
+        number
         for number, c in enumerate(searcher.problem.catalogue)
         if isinstance(c, PatchCandidates) and c.kind is distributed_mass.KIND
     ]
@@ -170,10 +170,8 @@ def _spread(
             near += [Patch(number, rows, xyz[rows].mean(axis=0), False)] if len(rows) else []
     if not kinds or not near:
         return None
-    kind, c = kinds[0]
-    more = c.with_patches([max(near, key=lambda p: len(p.rows))])
-    factors = more.extended(searcher.problem.factors[kind])
-    return _put(searcher, kind, more, factors), kind
+    largest = max(near, key=lambda p: len(p.rows))
+    return searcher.with_patches(kinds[0], [largest]), kinds[0]
 
 
 def surroundings_of_each(structure: Structure, c: Candidates, row: int) -> tuple[Surroundings, ...]:
@@ -304,24 +302,3 @@ def _padded(each: Sequence[Floats]) -> list[Floats]:
 def _alike(each: Candidates, c: Candidates) -> Candidates:
     """Return discs as one where they are those of twins."""
     return each if len(each) == 1 else together(each, np.arange(len(each))[None], c.maps)
-
-
-def with_kind(searcher: Searcher, kind: int, new: Candidates) -> Searcher:
-    """Put candidates into the catalogue, as one of its numbers; no scan looks at them."""
-    searcher = _put(searcher, kind, new, new.factors(searcher.problem.basis))
-    coarse = _set(searcher.coarse, kind, np.zeros(0, np.int64))
-    p = searcher.problem
-    missing = _set(p.missing, kind, None) if p.missing else ()
-    return replace(searcher, problem=replace(p, missing=missing), coarse=coarse)
-
-
-def _put(searcher: Searcher, kind: int, new: Candidates, factors: Rows) -> Searcher:
-    p = searcher.problem
-    catalogue = _set(tuple(p.catalogue), kind, new)
-    return replace(
-        searcher, problem=replace(p, catalogue=catalogue, factors=_set(p.factors, kind, factors))
-    )
-
-
-def _set(old: tuple[Any, ...], kind: int, one: object) -> tuple[Any, ...]:
-    return (*old[:kind], one, *old[kind + 1 :])

@@ -19,6 +19,7 @@ from ..effects.element_patches import area_of, gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
 from .exact_scan import scan
+from .found import objective_of
 from .model_selection import Scored, needed, ranked, says_else
 from .moves import Searcher
 from .patch_reshaping import options_beside, promising
@@ -38,21 +39,16 @@ def looked_again(searcher: Searcher, first: Scored, alone: float) -> tuple[Searc
         tried = ranked(searcher, _elsewhere(searcher, first.fit, q), tried)
         tried = ranked(searcher, _other_kinds(searcher, first.fit, q), tried)
     searcher, moved = _moved(searcher, tried[0], tried)
-    tried += moved
-    best = max(tried, key=_score)
+    tried = ranked(searcher, (), [*tried, *moved])
+    best = tried[0]
     others = [s for s in tried if says_else(searcher, best.fit, s.fit)]
     apart = [s for s in others if _kinds(searcher, s.fit) != _kinds(searcher, best.fit)]
     near = needed(best.judged) if best.judged else 0.0
-    for field, within in ((others, near), (apart, SEARCH.rival_gain * (best.score - alone))):
-        rival = max(field, key=_score, default=best)
-        if rival is not best and best.score - rival.score < within:
-            searcher, moved = _moved(searcher, rival, tried)
+    for field, within in ((others, near), (apart, SEARCH.nearly * (best.score - alone))):
+        if field and best.score - field[0].score < within:
+            searcher, moved = _moved(searcher, field[0], tried)
             tried += moved
-    return searcher, sorted(tried, key=_score, reverse=True)
-
-
-def _score(s: Scored) -> float:
-    return s.score
+    return searcher, ranked(searcher, (), tried)
 
 
 def _kinds(searcher: Searcher, f: Fit) -> list[str]:
@@ -61,16 +57,15 @@ def _kinds(searcher: Searcher, f: Fit) -> list[str]:
 
 def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
     """Return fits with another suspect anywhere in place of one, if they gain nearly as much."""
-    others = state.suspects[:q] + state.suspects[q + 1 :]
-    without = evaluate(searcher.problem, state.nuisance, others)
-    small, _ = searcher.local(without)
-    branches = searcher.branches(without, SEARCH.look_each, lambda problem: problem)
+    without = evaluate(searcher.problem, state.nuisance, state.others(q))
+    branches = searcher.branches(without, SEARCH.look_each, soft=False)
     tried = [
-        searcher.fitted(without, (*others, s), SEARCH.steps_new, small, True)
+        searcher.fitted(without, (*without.suspects, s), SEARCH.steps_new, soften=True)
         for _, s in branches[: SEARCH.look_fitted]
     ]
-    far = SEARCH.rival_gain * (without.objective - state.objective)
-    return _best([f for f in tried if f.objective - state.objective < far], SEARCH.look_judged)
+    far = SEARCH.nearly * (without.objective - state.objective)
+    close = [f for f in tried if f.objective - state.objective < far]
+    return sorted(close, key=objective_of)[: SEARCH.look_judged]
 
 
 def _other_kinds(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
@@ -78,13 +73,14 @@ def _other_kinds(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
 
     On the same matrix, however well they fit: what a beam's joint does a softer beam does as well.
     """
-    s, others = state.suspects[q], state.suspects[:q] + state.suspects[q + 1 :]
+    s = state.suspects[q]
     own = searcher.problem.catalogue[s.kind]
-    small, here = searcher.local(evaluate(searcher.problem, state.nuisance, others))
+    without = evaluate(searcher.problem, state.nuisance, state.others(q))
+    small, here = searcher.local(without)
     found: list[tuple[float, Suspect]] = []
     for kind, c in enumerate(searcher.problem.catalogue):
         away = np.linalg.norm(c.xyz - own.xyz[s.row], axis=1)
-        rows = np.flatnonzero(away < searcher.effort.near * searcher.size)
+        rows = np.flatnonzero(away < SEARCH.near * searcher.size)
         alike = c.kind is own.kind or c.kind.joins(own.kind) or c.law.acts_on != own.law.acts_on
         if alike or c.kind.late or not len(rows):
             continue
@@ -93,7 +89,8 @@ def _other_kinds(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
         found.append((float(cost.min()), Suspect(kind, int(rows[row]), tuple(c.trials[size]))))
     nearest = sorted(found, key=lambda f: f[0])[: SEARCH.look_judged]
     return [
-        searcher.fitted(state, (*others, new), SEARCH.steps_new, small, True) for _, new in nearest
+        searcher.fitted(without, (*without.suspects, new), SEARCH.steps_new, soften=True)
+        for _, new in nearest
     ]
 
 
@@ -108,19 +105,19 @@ def _moved(
     out: list[Scored] = []
     seen = {_shape(searcher, s.fit) for s in known}
     paid = dict[int, float]()
-    for _ in range(SEARCH.look_moves):
+    for _ in range(SEARCH.rounds):
         before = best.score
         for q in range(len(best.fit.suspects)):
             c = searcher.problem.catalogue[best.fit.suspects[q].kind]
             searcher, fits = _beside(searcher, best, q)
             fits = [f for f in fits if _shape(searcher, f) not in seen]
             seen |= {_shape(searcher, f) for f in fits}
-            new = [s for s in ranked(searcher, fits, [best]) if s is not best]
+            first, *_ = both = ranked(searcher, fits, [best])
+            new = [s for s in both if s is not best]
             now = paid | {q: float(np.log1p(len(fits)))} if gives(c) else paid
             out += (replace(s, score=s.score - sum(now.values())) for s in new)
-            first = max((best, *new), key=_score)
             best, paid = first, paid if first is best else now
-        if best.score < before + SEARCH.look_gain:
+        if best.score < before + SEARCH.likelier:
             break
     return searcher, out
 
@@ -144,18 +141,17 @@ def _beside(searcher: Searcher, best: Scored, q: int) -> tuple[Searcher, list[Fi
     if not near and not gives(c):
         return searcher, []
     searcher, options = options_beside(searcher, s)
-    before, after = state.suspects[:q], state.suspects[q + 1 :]
     if gives(c) and best.judged:
         now = best.judged.fit
         moved = (_as_much(searcher, now.suspects[q], o) for o in options)
-        tried = [evaluate(searcher.problem, now.nuisance, (*before, o, *after)) for o in moved]
+        tried = [evaluate(searcher.problem, now.nuisance, state.instead(q, o)) for o in moved]
         return searcher, tried
     options = promising(searcher, state, q, [*options, *near], SEARCH.look_sizes)
     tried = [
-        searcher.fitted(state, (*before, option, *after), SEARCH.steps_new)
+        searcher.fitted(state, state.instead(q, option), SEARCH.steps_new)
         for option in options[: SEARCH.look_beside]
     ]
-    return searcher, _best(tried, SEARCH.look_beside_judged)
+    return searcher, sorted(tried, key=objective_of)[: SEARCH.look_beside_judged]
 
 
 def _as_much(searcher: Searcher, suspect: Suspect, other: Suspect) -> Suspect:
@@ -166,7 +162,3 @@ def _as_much(searcher: Searcher, suspect: Suspect, other: Suspect) -> Suspect:
         if gives(c := searcher.problem.catalogue[s.kind])
     )
     return other.moved(had / has * np.array(suspect.theta))
-
-
-def _best(fits: Sequence[Fit], count: int) -> list[Fit]:
-    return sorted(fits, key=lambda f: f.objective)[:count]

@@ -108,11 +108,6 @@ class _Tried:
     deviation: Deviation
     judged: Judged
 
-    @property
-    def family(self) -> str:
-        """See `Shape`."""
-        return self.deviation.shape.family
-
 
 @dataclass(frozen=True, eq=False)
 class _Look:
@@ -148,7 +143,8 @@ class _Look:
 
     def between(self, tried: Sequence[_Tried]) -> Iterator[Shape]:
         """Give what the best shape and the others of its family amount to together."""
-        first, *others = (t for t in tried if t.family == tried[0].family)
+        family = tried[0].deviation.shape.family
+        first, *others = (t for t in tried if t.deviation.shape.family == family)
         if not others:
             return
         p, x = first.judged.problem, first.judged.fit.nuisance

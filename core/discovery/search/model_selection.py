@@ -50,13 +50,6 @@ def side_by_side(searcher: Searcher, f: Fit) -> list[tuple[int, int]]:
     return [(j, i) for i, j in found.items()]
 
 
-def _bodies(searcher: Searcher, f: Fit) -> float:
-    """Return what the choice of the bodies of equipment cost, ln of a probability."""
-    catalogue = searcher.problem.catalogue
-    known = (grown(catalogue[s.kind], s.row) for s in f.suspects)
-    return sum(c.paid for c in known if c)
-
-
 def chosen(searcher: Searcher, found: Found) -> int:
     """Return the number of suspects that earn their place, see `kept`, or that may yet.
 
@@ -105,10 +98,12 @@ class Scored:
 def scored(searcher: Searcher, f: Fit, best: Scored | None = None) -> Scored:
     """Return a hypothesis with its evidence, less ln of the number of choices it had.
 
-    Where the `best` is so far ahead that it does not matter, smooth fields are not tried.
+    Of bodies of equipment that is known. Where the `best` is so far ahead that it does not matter,
+    smooth fields are not tried.
     """
     paid = sum(float(np.log(choices(searcher, s))) for s in f.suspects)
-    paid += _bodies(searcher, f)
+    bodies = (grown(searcher.problem.catalogue[s.kind], s.row) for s in f.suspects)
+    paid += sum(body.paid for body in bodies if body)
     least = -np.inf
     if best and best.judged:
         least = best.score - needed(best.judged) + paid
@@ -200,8 +195,8 @@ def told_beside(searcher: Searcher, richer: Scored, poorer: Scored, alone: Score
 
 def without_one(searcher: Searcher, f: Fit) -> list[Fit]:
     """Return a hypothesis without one of its suspects, each in turn, nothing else moved."""
-    parts = (f.suspects[:q] + f.suspects[q + 1 :] for q in range(len(f.suspects)))
-    return [evaluate(searcher.problem, f.nuisance, suspects) for suspects in parts]
+    each = range(len(f.suspects))
+    return [evaluate(searcher.problem, f.nuisance, f.others(q)) for q in each]
 
 
 def without_one_to_spare(searcher: Searcher, f: Fit, null: Fit) -> Fit | None:
@@ -306,7 +301,7 @@ def _unmatched(
     twins on either side of a place.
     """
     catalogue = searcher.problem.catalogue
-    near = SEARCH.same_effect_apart * searcher.effort.apart * searcher.size
+    near = SEARCH.same_effect_apart * SEARCH.apart * searcher.size
 
     def same(s: Suspect, t: Suspect) -> bool:
         a, b = catalogue[s.kind], catalogue[t.kind]
@@ -350,9 +345,9 @@ def explained(searcher: Searcher, best: Fit, number: int) -> tuple[int, ...]:
     Those whose misfit rises clearly where the suspect is taken away and nothing else moves.
     """
     p = searcher.problem.entire()
-    others = best.suspects[:number] + best.suspects[number + 1 :]
     left, kept = (
-        mode_misfits(p, *solve(p, best.nuisance, suspects)) for suspects in (others, best.suspects)
+        mode_misfits(p, *solve(p, best.nuisance, suspects))
+        for suspects in (best.others(number), best.suspects)
     )
     gained = (left - kept) / noise_scale(searcher.problem, best)
     clear = (gained > SEARCH.explains) & (gained > SEARCH.explains_share * gained.max())

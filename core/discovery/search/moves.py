@@ -8,7 +8,7 @@ one is taken out and looked for anew.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -17,15 +17,17 @@ from itertools import chain, permutations
 import numpy as np
 
 from ...arrays import Bools, Floats, Ints
-from ..effects.candidates import Suspect, beside as stretches_beside, places_of
+from ..discovery_numbers import DISCOVERY
+from ..effects.candidates import Candidates, Suspect, beside as stretches_beside, places_of
+from ..effects.element_patches import Patch, PatchCandidates
 from ..likelihood.hypothesis import Fit, Problem, softened
-from ..likelihood.likelihood_numbers import Effort
 from ..likelihood.map_fit import evaluate, fit, promised, solve
 from ..likelihood.repeated_modes import none_cut
-from ..model_error.diffuse_fit import Judged
+from ..model_error.diffuse_fit import Judged, everything
 from ..reduction.search_basis import structural
 from .coarse_scan import Look, Neighbourhoods, look
 from .exact_scan import best_apart, scan
+from .found import objective_of
 from .search_numbers import SEARCH
 
 _NONE, _NEARBY = np.zeros(0, np.int64), np.array(SEARCH.nearby)
@@ -51,42 +53,57 @@ class Searcher:
 
     problem: Problem
     coarse: tuple[Ints, ...]
-    active: tuple[int, ...]
     start: Floats
     size: float
-    effort: Effort
     judged: Callable[..., Judged | None] = lambda *_: None
     beside: tuple[Neighbourhoods | None, ...] = ()
 
+    @property
+    def active(self) -> tuple[int, ...]:
+        """Numbers of the known parameters and the error of the mesh: all are fitted."""
+        return everything(self.problem)
+
     def null(self) -> Fit:
         """Fit the known parameters alone."""
-        return fit(self.problem, self.start, (), self.active, iterations=SEARCH.steps_null)
+        return fit(self.problem, self.start, (), self.active, DISCOVERY.steps)
 
     def local(self, state: Fit) -> tuple[Problem, Fit]:
         """Return the problem on the lowest eigenvectors of a fit, and the fit there."""
-        return _local(self.problem, state, min(self.effort.search_modes, self.problem.basis.size))
+        return _local(self.problem, state, min(SEARCH.search_modes, self.problem.basis.size))
 
-    def branches(
-        self, state: Fit, count: int, by: Callable[[Problem], Problem] = softened
-    ) -> list[tuple[float, Suspect]]:
+    def without(self, state: Fit, q: int) -> tuple[Problem, Fit]:
+        """Return the same of a fit less one suspect, nothing else moved."""
+        return self.local(evaluate(self.problem, state.nuisance, state.others(q)))
+
+    def with_kind(self, kind: int, new: Candidates) -> Searcher:
+        """Put candidates into the catalogue, as one of its numbers; no scan looks at a new one."""
+        p = self.problem
+        coarse = self.coarse if kind < len(self.coarse) else (*self.coarse, _NONE)
+        problem = p.with_kind(kind, new, new.factors(p.basis))
+        return replace(self, problem=problem, coarse=coarse)
+
+    def with_patches(self, kind: int, patches: Sequence[Patch]) -> Searcher:
+        """Put patches into the catalogue, after those that one of its numbers has."""
+        c, p = self.problem.catalogue[kind], self.problem
+        assert isinstance(c, PatchCandidates)
+        more = c.with_patches(patches)
+        return replace(self, problem=p.with_kind(kind, more, more.extended(p.factors[kind])))
+
+    def branches(self, state: Fit, count: int, soft: bool = True) -> list[tuple[float, Suspect]]:
         """Return the most promising further suspects of every kind, see `scanned`."""
-        return self.scanned(state, count, self.coarse, by).best
+        return self.scanned(state, count, self.coarse, soft).best
 
     def scanned(
-        self,
-        state: Fit,
-        count: int,
-        among: tuple[Ints, ...],
-        by: Callable[[Problem], Problem] = softened,
+        self, state: Fit, count: int, among: tuple[Ints, ...], soft: bool = True
     ) -> Scanned:
         """Return the most promising further suspects of every kind, `count` of each.
 
         Of the places `among` the rows of each kind and those next to the best of them, exactly with
         all else as it stands, and of the best of these by what a step of all unknowns would leave;
-        ``by(problem)`` has the noise by which they promise.
+        by a `soft` noise, as far from the truth.
         """
         small, here = self.local(state)
-        small = by(small)
+        small = softened(small) if soft else small
         here = evaluate(small, here.nuisance, here.suspects)
         seen: dict[int, Look] = {}
         worth = np.inf
@@ -97,8 +114,8 @@ class Searcher:
             if len(rows):
                 seen[kind] = look(small, here, kind, rows, beside, worth)
                 gain = here.objective - min(float(s.cost.min()) for s in seen.values())
-                worth = here.objective - SEARCH.worth_refining * gain
-        apart, out = self.effort.apart * self.size, list[tuple[float, Suspect]]()
+                worth = here.objective - 0.5 * SEARCH.worth_fitting * gain
+        apart, out = SEARCH.apart * self.size, list[tuple[float, Suspect]]()
         for kind, coarse in seen.items():
             tried = self._finer(small, here, kind, coarse, worth)
             spots = small.catalogue[kind].spots[tried.rows]
@@ -136,9 +153,9 @@ class Searcher:
         What `worth` allows; of each, places with its size first, then other sizes at some of them.
         """
         c, spots = small.catalogue[kind], small.catalogue[kind].spots
-        apart, done = self.effort.apart * self.size, set(coarse.rows.tolist())
+        apart, done = SEARCH.apart * self.size, set(coarse.rows.tolist())
         groups: list[tuple[int, Ints]] = []
-        for i in best_apart(spots[coarse.rows], coarse.cost, apart, self.effort.looked_at):
+        for i in best_apart(spots[coarse.rows], coarse.cost, apart, SEARCH.looked_at):
             near = self.around(kind, int(coarse.rows[i])) if coarse.cost[i] <= worth else _NONE
             near = near[~self._taken(here, kind, near)]
             near = np.array([r for r in near.tolist() if r not in done], dtype=np.int64)
@@ -168,8 +185,7 @@ class Searcher:
         """Places next to one, nearest first."""
         spots = self.problem.catalogue[kind].spots
         distance = np.linalg.norm(spots - spots[row], axis=1)
-        near = np.flatnonzero(distance < self.effort.apart * self.size)
-        return np.asarray(near[np.argsort(distance[near], kind="stable")][: self.effort.around])
+        return _nearest(distance, SEARCH.apart * self.size)[: SEARCH.around]
 
     def _taken(self, state: Fit, kind: int, rows: Ints) -> Bools:
         """Places too near to a suspect of the same kind or nature to be a second one, (n,)."""
@@ -179,19 +195,14 @@ class Searcher:
             other = self.problem.catalogue[s.kind]
             if s.kind == kind or other.kind.joins(c.kind):
                 apart = np.linalg.norm(c.spots[rows] - other.spots[s.row], axis=1)
-                taken |= apart < self.effort.apart * self.size
+                taken |= apart < SEARCH.apart * self.size
         return taken
 
     def fitted(
-        self,
-        state: Fit,
-        suspects: Sequence[Suspect],
-        iterations: int = SEARCH.steps,
-        small: Problem | None = None,
-        soften: bool = False,
+        self, state: Fit, suspects: Sequence[Suspect], iterations: int, soften: bool = False
     ) -> Fit:
         """Fit suspects and parameters on the basis of a state, then weigh on the full basis."""
-        small = small or self.local(state)[0]
+        small, _ = self.local(state)
         if soften:
             near = fit(softened(small), state.nuisance, suspects, self.active, iterations)
             suspects, state = near.suspects, near
@@ -202,15 +213,12 @@ class Searcher:
         except np.linalg.LinAlgError:  # shells made thinner leave no mass on the whole basis
             return fit(whole, state.nuisance, suspects, self.active, steps)
 
-    def refined(self, state: Fit, by: Callable[[Problem], Problem] = softened) -> Fit:
-        """Move every suspect to better neighbours until none is better.
-
-        ``by(problem)`` has the noise by which they promise: far from the truth a softened one.
-        """
+    def refined(self, state: Fit) -> Fit:
+        """Move every suspect to better neighbours until none is better."""
         n = len(state.suspects)
         left, q = n, 0
         for _ in range(SEARCH.rounds * n):
-            better = self._neighbour(state, q, by)
+            better = self._neighbour(state, q)
             state, left = (state, left - 1) if better is None else (better, n)
             if not left:
                 break
@@ -227,29 +235,30 @@ class Searcher:
         again = fit(self.problem, near.nuisance, near.suspects, self.active, SEARCH.steps)
         return again if again.objective < state.objective else state
 
-    def _neighbour(self, state: Fit, q: int, by: Callable[[Problem], Problem]) -> Fit | None:
+    def _neighbour(self, state: Fit, q: int) -> Fit | None:
         suspect = state.suspects[q]
-        others = state.suspects[:q] + state.suspects[q + 1 :]
         if stretches := stretches_beside(self.problem.catalogue, suspect):
             return self._best_of(state, q, stretches)
-        without = evaluate(self.problem, state.nuisance, others)
-        small, here = self.local(without)
-        every = chain.from_iterable(self._near(by(small), here, suspect))
+        small, here = self.without(state, q)
+        every = self._near(softened(small), here, suspect)
         near = sorted(every, key=lambda moved: moved[0])[: SEARCH.promising]
-        small = self.local(state)[0]
-        soft = by(small)
-        options: list[tuple[float, tuple[Suspect, ...]]] = []
-        for _, moved in near:
-            beside = (*others[:q], moved, *others[q:])
-            options.append((promised(soft, state.nuisance, beside, self.active), beside))
+        soft = softened(self.local(state)[0])
+        options = self._hoped(soft, state, (state.instead(q, moved) for _, moved in near))
         stays = promised(soft, state.nuisance, state.suspects, self.active)
-        for hope, beside in sorted(options, key=lambda option: option[0])[: SEARCH.moves_tried]:
+        for hope, suspects in options:
             if hope > stays:
                 break
-            trial = self.fitted(state, beside, SEARCH.steps_moved, small)
+            trial = self.fitted(state, suspects, SEARCH.steps_moved)
             if trial.objective < state.objective - SEARCH.better:
                 return trial
         return None
+
+    def _hoped(
+        self, soft: Problem, state: Fit, options: Iterable[tuple[Suspect, ...]]
+    ) -> list[tuple[float, tuple[Suspect, ...]]]:
+        """Return the few of which a step of all unknowns would leave least, with what it would."""
+        hoped = [(promised(soft, state.nuisance, s, self.active), s) for s in options]
+        return sorted(hoped, key=lambda h: h[0])[: SEARCH.moves_tried]
 
     def forms(self, suspect: Suspect) -> Iterator[tuple[int, Floats, float]]:
         """Give kinds, place and ln of the size of what a suspect may be as well: one of its nature.
@@ -263,28 +272,24 @@ class Searcher:
                 if kind != suspect.kind and c.kind.joins(own.kind) and not c.copies:
                     yield kind, spots.mean(axis=0), suspect.theta[0] + float(np.log(len(spots)))
 
-    def _near(
-        self, small: Problem, here: Fit, suspect: Suspect
-    ) -> Iterator[list[tuple[float, Suspect]]]:
+    def _near(self, small: Problem, here: Fit, suspect: Suspect) -> Iterator[tuple[float, Suspect]]:
         """Give the best places near a suspect, in every form, beside all others `here`."""
         c = self.problem.catalogue[suspect.kind]
         away = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)
-        theta, count = np.array(suspect.theta), self.effort.neighbours
+        theta, count = np.array(suspect.theta), SEARCH.neighbours
         near = self._promising(small, here, suspect.kind, away, theta, count)
-        yield [(cost, s) for cost, s in near if s.row != suspect.row]
+        yield from ((cost, s) for cost, s in near if s.row != suspect.row)
         for kind, spot, size in self.forms(suspect):
             c = self.problem.catalogue[kind]
             away = np.linalg.norm(c.xyz - spot, axis=1)
-            theta = c.like([size])
-            yield self._promising(small, here, kind, away, theta, self.effort.around)
+            yield from self._promising(small, here, kind, away, c.like([size]), SEARCH.around)
 
     def _promising(
         self, small: Problem, here: Fit, kind: int, away: Floats, theta: Floats, count: int
     ) -> list[tuple[float, Suspect]]:
         """Return what is best of a kind at `count` places near by, from so far `away` (n,)."""
         c = self.problem.catalogue[kind]
-        rows = np.flatnonzero(away <= self.effort.near * self.size)
-        rows = _some(rows[np.argsort(away[rows], kind="stable")], count)
+        rows = _some(_nearest(away, SEARCH.near * self.size), count)
         rows = rows[~self._taken(here, kind, rows)]
         if not len(rows):
             return []
@@ -294,23 +299,20 @@ class Searcher:
         rows, moved = rows[kept], c.around(own[0].tolist(), np.array(SEARCH.neighbouring))
         trials = np.concatenate([own, moved])
         score = np.hstack([alike[kept], scan(small, here, kind, rows, moved)])
+        best, theta = score.min(axis=1), trials[score.argmin(axis=1)].tolist()
         return [
-            (
-                float(score[i].min()),
-                Suspect(kind, int(rows[i]), tuple(trials[score[i].argmin()].tolist())),
-            )
-            for i in np.argsort(score.min(axis=1), kind="stable")[: SEARCH.promising]
+            (float(best[i]), Suspect(kind, int(rows[i]), tuple(theta[i])))
+            for i in np.argsort(best, kind="stable")[: SEARCH.promising]
         ]
 
     def _best_of(self, state: Fit, q: int, options: Sequence[Suspect]) -> Fit | None:
         """Return the best fit with another suspect in place of one, None where none is better."""
-        before, after = state.suspects[:q], state.suspects[q + 1 :]
-        small = self.local(evaluate(self.problem, state.nuisance, (*before, *after)))[0]
+        small, _ = self.without(state, q)
         tried = [
-            fit(small, state.nuisance, (*before, s, *after), self.active, SEARCH.steps_moved)
+            fit(small, state.nuisance, state.instead(q, s), self.active, SEARCH.steps_moved)
             for s in options
         ]
-        for near in sorted(tried, key=lambda f: f.objective)[: SEARCH.stretches_tried]:
+        for near in sorted(tried, key=objective_of)[: SEARCH.shapes_tried]:
             trial = fit(self.problem, near.nuisance, near.suspects, self.active, SEARCH.steps_moved)
             if trial.objective < state.objective - SEARCH.better:
                 return trial
@@ -319,13 +321,13 @@ class Searcher:
     def reconsidered(self, state: Fit) -> Fit:
         """Take each suspect but the last out in turn, and look for a better one."""
         for q in self.doubtful(state, len(state.suspects) - 1):
-            others = state.suspects[:q] + state.suspects[q + 1 :]
+            others = state.others(q)
             without = self.fitted(state, others, SEARCH.steps_moved)
-            for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.anew_tried]:
+            for _, branch in self.branches(without, SEARCH.anew_looked)[: SEARCH.moves_tried]:
                 trial = self.fitted(without, (*others, branch), SEARCH.steps_new, soften=True)
                 if trial.objective < state.objective + SEARCH.anew_near * abs(state.objective):
                     trial = self.settled(self.refined(trial))
-                if trial.objective < state.objective - SEARCH.better_anew:
+                if trial.objective < state.objective - 2.0 * SEARCH.likelier:
                     state = trial
                     break
         return state
@@ -339,10 +341,9 @@ class Searcher:
         pairs = permutations(range(len(state.suspects)), 2)
         moved = (self._moved_both(soft, state, *pair) for pair in pairs)
         options = sorted(chain.from_iterable(moved), key=lambda o: o[0])[: SEARCH.together]
-        hoped = [(promised(soft, state.nuisance, s, self.active), s) for _, s in options]
-        for _, suspects in sorted(hoped, key=lambda o: o[0])[: SEARCH.moves_tried]:
+        for _, suspects in self._hoped(soft, state, (s for _, s in options)):
             trial = self.fitted(state, suspects, SEARCH.steps_new, soften=True)
-            if trial.objective < state.objective - SEARCH.better_anew:
+            if trial.objective < state.objective - 2.0 * SEARCH.likelier:
                 return self.refined(trial)
         return state
 
@@ -358,23 +359,20 @@ class Searcher:
         away, beside = (
             np.linalg.norm(e.spots - e.spots[s.row], axis=1) for e, s in ((c, one), (d, other))
         )
-        rows = np.flatnonzero(away <= self.effort.near * self.size)
-        for row in _some(rows[np.argsort(away[rows], kind="stable")], self.effort.around):
-            suspects = list(state.suspects)
-            suspects[p] = replace(one, row=int(row))
-            here = evaluate(soft, state.nuisance, suspects[:q] + suspects[q + 1 :])
-            near = beside, np.array(other.theta), self.effort.neighbours
+        for row in _some(_nearest(away, SEARCH.near * self.size), SEARCH.around):
+            moved = replace(state, suspects=state.instead(p, replace(one, row=int(row))))
+            here = evaluate(soft, state.nuisance, moved.others(q))
+            near = beside, np.array(other.theta), SEARCH.neighbours
             for cost, s in self._promising(soft, here, other.kind, *near):
-                yield cost, (*suspects[:q], s, *suspects[q + 1 :])
+                yield cost, moved.instead(q, s)
 
     def doubtful(self, state: Fit, first: int) -> list[int]:
         """Of the `first` suspects those to be looked for anew: of many the one missed least."""
         older = list(range(first))
         if len(state.suspects) < SEARCH.anew_all:
             return older
-        others = (state.suspects[:q] + state.suspects[q + 1 :] for q in older)
-        left = [evaluate(self.problem, state.nuisance, rest).objective for rest in others]
-        return [older[int(np.argmin(left))]]
+        left = [evaluate(self.problem, state.nuisance, state.others(q)).objective for q in older]
+        return [int(np.argmin(left))]
 
 
 @lru_cache(maxsize=SEARCH.locals_kept)
@@ -386,6 +384,12 @@ def _local(problem: Problem, state: Fit, n: int) -> tuple[Problem, Fit]:
     bare = replace(problem, basis=problem.basis.bare(), modes=n)
     small = bare.turned(structural(T[:, :n], own[:, :n]), rest, state.suspects)
     return small, evaluate(small, state.nuisance, state.suspects)
+
+
+def _nearest(away: Floats, most: float) -> Ints:
+    """Return the rows of what is so far `away` (n,) at most, nearest first."""
+    rows = np.flatnonzero(away <= most)
+    return np.asarray(rows[np.argsort(away[rows], kind="stable")])
 
 
 def _some(rows: Ints, count: int) -> Ints:

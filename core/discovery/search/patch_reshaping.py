@@ -18,10 +18,8 @@ from ..effects.candidates import Candidates, Suspect
 from ..effects.element_patches import Patch, PatchCandidates, area_of
 from ..effects.link_spring import Links
 from ..likelihood.hypothesis import Fit
-from ..likelihood.map_fit import evaluate
 from ..reduction.elements_and_supports import Members, Structure
 from .exact_scan import scan
-from .footprints import with_kind
 from .model_selection import scored
 from .moves import Searcher
 from .search_numbers import SEARCH
@@ -41,10 +39,9 @@ def reshaped(searcher: Searcher, state: Fit) -> tuple[Searcher, Fit]:
 def _step(searcher: Searcher, state: Fit, q: int) -> tuple[Searcher, Fit] | None:
     """Give one suspect the best of the shapes next to its own, None where none is worth it."""
     wide, options = options_beside(searcher, state.suspects[q])
-    before, after = state.suspects[:q], state.suspects[q + 1 :]
     now, worth = scored(wide, state), float(np.log1p(len(options)))
-    for option in promising(wide, state, q, options)[: SEARCH.reshape_tried]:
-        trial = wide.fitted(state, (*before, option, *after), SEARCH.steps_new)
+    for option in promising(wide, state, q, options)[: SEARCH.shapes_tried]:
+        trial = wide.fitted(state, state.instead(q, option), SEARCH.steps_new)
         if scored(wide, trial, now).score > now.score + worth:
             return wide, trial
     return None
@@ -58,8 +55,7 @@ def promising(
     sizes: Sequence[float] = SEARCH.reshape_sizes,
 ) -> list[Suspect]:
     """Return what may stand in place of one suspect with the best sizes, the best first."""
-    others = state.suspects[:q] + state.suspects[q + 1 :]
-    small, here = searcher.local(evaluate(searcher.problem, state.nuisance, others))
+    small, here = searcher.without(state, q)
     tried: list[tuple[float, Suspect]] = []
     for kind in sorted({s.kind for s in options}):
         of_kind = [s for s in options if s.kind == kind]
@@ -84,7 +80,7 @@ def options_beside(searcher: Searcher, suspect: Suspect) -> tuple[Searcher, list
     if isinstance(c, Links):
         near, kind = c.near(suspect.row, SEARCH.link_near), len(searcher.problem.catalogue)
         options = [replace(suspect, kind=kind, row=row) for row in range(len(near))]
-        return with_kind(searcher, kind, near), options
+        return searcher.with_kind(kind, near), options
     beside = [
         Suspect(kind, int(row), tuple(d.like([size])))
         for kind, spot, size in searcher.forms(suspect)
@@ -111,21 +107,15 @@ def _added(
     searcher: Searcher, suspect: Suspect, patches: Sequence[Patch]
 ) -> tuple[Searcher, list[Suspect]]:
     """Put patches into the catalogue, each into the kind of its nature where its extent belongs."""
-    problem = searcher.problem
     of_kind: dict[int, list[Patch]] = {}
     for p in patches:
         of_kind.setdefault(_kind_of(searcher, suspect, p), []).append(p)
-    catalogue, factors = list(problem.catalogue), list(problem.factors)
     options: list[Suspect] = []
     for kind, new in of_kind.items():
-        before = catalogue[kind]
-        assert isinstance(before, PatchCandidates)
-        after = before.with_patches(new)
-        catalogue[kind] = after
-        factors[kind] = after.extended(factors[kind])
-        options += [replace(suspect, kind=kind, row=len(before) + k) for k in range(len(new))]
-    problem = replace(problem, catalogue=tuple(catalogue), factors=tuple(factors))
-    return replace(searcher, problem=problem), options
+        first = len(searcher.problem.catalogue[kind])
+        options += [replace(suspect, kind=kind, row=first + k) for k in range(len(new))]
+        searcher = searcher.with_patches(kind, new)
+    return searcher, options
 
 
 def _kind_of(searcher: Searcher, suspect: Suspect, patch: Patch) -> int:
@@ -190,15 +180,14 @@ def _rows_of_elements(
         return []
     frame = np.stack([along / side, across / depth])
     place = (xyz - middle) @ frame.T / [side, depth]
-    half = SEARCH.row_of_elements
-    low, high = place[inside].min(axis=0) - half, place[inside].max(axis=0) + half
+    low, high = place[inside].min(axis=0) - 0.5, place[inside].max(axis=0) + 0.5
     corners = ring & np.all((place > low) & (place < high), axis=1)
     out = [(corners, np.zeros_like(inside))]
     for k in (0, 1):
         level = (place[:, 1 - k] > low[1 - k]) & (place[:, 1 - k] < high[1 - k])
         ways = [
-            (place[:, k] > high[k], place[:, k] > high[k] - 2.0 * half),
-            (place[:, k] < low[k], place[:, k] < low[k] + 2.0 * half),
+            (place[:, k] > high[k], place[:, k] > high[k] - 1.0),
+            (place[:, k] < low[k], place[:, k] < low[k] + 1.0),
         ]
         ways.append((ways[0][0] | ways[1][0], ways[0][1] | ways[1][1]))
         out += [(ring & level & ahead, inside & last) for ahead, last in ways]

@@ -35,8 +35,8 @@ def polished(ground: Ground, problem: Problem, state: Fit) -> Fit:
     """
     for _ in range(SEARCH.made_anew):
         own = complete_model(ground, problem, state)
-        active = tuple(range(len(state.nuisance)))
-        new = fit(own.problem, state.nuisance, own.start, active, SEARCH.steps_polished)
+        every = everything(own.problem)
+        new = fit(own.problem, state.nuisance, own.start, every, SEARCH.steps_polished)
         before, state = state, replace(new, suspects=_back(state, new))
         if _follows(problem, before, state):
             break

@@ -75,13 +75,8 @@ def searched(
 
 
 def _likelier(searcher: Searcher, *ways: Found) -> Found:
-    """Return the likelier of two outcomes with the levels of the other among its rivals."""
+    """Return the likelier of two outcomes with the hypotheses of the other among its rivals."""
     other, found = sorted(ways, key=lambda way: _evidence(searcher, way))
-    return _beside_others(found, other)
-
-
-def _beside_others(found: Found, other: Found) -> Found:
-    """Return an outcome with the hypotheses of another among its rivals."""
     levels = len(found.rivals)
     others = (f for level in other.rivals[:levels] for f in level)
     return found.with_rivals((*other.levels[1:levels], *others))
@@ -147,7 +142,7 @@ def _beside(searcher: Searcher, state: Fit, few: int = SEARCH.late_moved) -> lis
     """
     fits: dict[int, list[Fit]] = {}
     for _, branch in searcher.branches(state, SEARCH.late_tried):
-        new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, None, True)
+        new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, soften=True)
         if not hopeless(searcher, state, new):
             fits.setdefault(branch.kind, []).append(new)
     first = (sorted(own, key=objective_of)[:few] for own in fits.values())

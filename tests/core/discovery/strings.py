@@ -11,7 +11,6 @@ from trueup.core.discovery.effects import KINDS
 from trueup.core.discovery.effects.candidates import Candidates
 from trueup.core.discovery.effects.effect_laws import MassLaw, SpringLaw, TunedLaw
 from trueup.core.discovery.likelihood.hypothesis import Prior, Problem
-from trueup.core.discovery.likelihood.likelihood_numbers import Effort
 from trueup.core.discovery.likelihood.map_fit import evaluate
 from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
 from trueup.core.discovery.model_error.diffuse_fit import everything, judged
@@ -117,8 +116,7 @@ def searcher(truth, modes_out=(), n_modes=12, scatter=(0.001, 0.01), seed=3) -> 
         16,
     )
     every = tuple(np.arange(N) for _ in catalogue)
-    effort = Effort(apart=0.07, near=0.1)
-    return Searcher(problem, every, (0,), np.zeros(2), 1.0, effort, by_the_whole_test)
+    return Searcher(problem, every, np.zeros(2), 1.0, by_the_whole_test)
 
 
 def by_the_whole_test(problem, f, least=-np.inf):

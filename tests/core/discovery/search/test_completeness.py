@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from trueup.core.discovery.effects import point_mass
+from trueup.core.discovery.likelihood.hypothesis import Fit
 from trueup.core.discovery.model_error.support_reach import Reach
 from trueup.core.discovery.search import completeness as room, model_selection
 from trueup.core.discovery.search.completeness import Completeness, completeness
@@ -139,7 +140,7 @@ def gaining(evidence):
 
 def hypothesis(objective, *rows):
     suspects = tuple(Some(kind=0, row=r) for r in rows)
-    return Some(objective=objective, suspects=suspects, nuisance=None)
+    return Fit(objective, objective, None, suspects, None, None, None, None, ())
 
 
 def weighed(monkeypatch, found, evidence, alike=(), nothing=False, size=1.0):
@@ -174,7 +175,6 @@ def weighed(monkeypatch, found, evidence, alike=(), nothing=False, size=1.0):
         problem=Some(catalogue=[kind], heard=None),
         coarse=[np.arange(100)],
         size=size,
-        effort=Some(apart=0.1),
         fitted=lambda f, suspects, _: hypothesis(f.objective, *(t.row for t in suspects)),
         judged=lambda _, f, __: gaining(evidence.get(tuple(s.row for s in f.suspects), 0.0)),
     )

@@ -54,7 +54,7 @@ def searching(request):
     """The search by all twelve modes and all sensors."""
     modes, sensors = np.zeros(12, bool), np.zeros(len(request.placed.observation), bool)
     ground = ground_of(request, ~modes)
-    return core._searcher(core._Trial(request, ground, sensors, 0.01, modes, sensors))
+    return core._searcher(core._Trial(request, ground, sensors, 0.01, (modes, sensors)))
 
 
 def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch):
@@ -63,7 +63,7 @@ def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch)
     masses = s.problem.catalogue[0]
     row = next(i for i, w in enumerate(masses.where) if w["grids"] == [6])
     point = s.fitted(
-        s.null(), (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.5])))),)
+        s.null(), (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.5])))),), 6
     )
     wide, grown = equipped(request.structure, s, point)
     (found,) = grown.suspects
@@ -85,7 +85,7 @@ def test_a_body_that_climbed_beside_something_else_climbs_on(tmp_path, monkeypat
     s = searching(request)
     row = next(i for i, w in enumerate(s.problem.catalogue[0].where) if w["grids"] == [6])
     light = (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.1])))),)
-    heavy, block = as_blocks(request.structure, s, s.fitted(s.null(), light), 1e2)
+    heavy, block = as_blocks(request.structure, s, s.fitted(s.null(), light, 6), 1e2)
     wide, stood = equipped(request.structure, heavy, block)
     (found,) = stood.suspects
     off = wide.problem.catalogue[found.kind].bodies[found.row].offset
@@ -101,7 +101,7 @@ def test_what_looks_like_an_absorber_is_a_mass_that_resists_being_turned(tmp_pat
     )
     row = next(i for i, w in enumerate(absorbers.where) if w["grids"] == [6])
     size = absorbers.like(np.log([0.2, 200.0]))
-    hung = s.fitted(s.null(), (Suspect(kind, row, tuple(size)),))
+    hung = s.fitted(s.null(), (Suspect(kind, row, tuple(size)),), 6)
     wide, stood = equipped(request.structure, s, hung)
     (found,) = stood.suspects
     assert wide.problem.catalogue[found.kind].kind is KIND
@@ -113,7 +113,7 @@ def test_a_body_costs_what_it_cost_to_have_had_a_choice(tmp_path, monkeypatch):
     s = searching(request)
     row = next(i for i, w in enumerate(s.problem.catalogue[0].where) if w["grids"] == [6])
     point = s.fitted(
-        s.null(), (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.5])))),)
+        s.null(), (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.5])))),), 6
     )
     wide, stood = equipped(request.structure, s, point)
     (found,) = stood.suspects
@@ -131,7 +131,7 @@ def test_a_mass_in_a_poor_model_is_a_block_of_what_the_structure_is_made_of(tmp_
     s = searching(request)
     row = next(i for i, w in enumerate(s.problem.catalogue[0].where) if w["grids"] == [6])
     point = s.fitted(
-        s.null(), (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.5])))),)
+        s.null(), (Suspect(0, row, tuple(s.problem.catalogue[0].like(np.log([0.5])))),), 6
     )
     mass = float(np.exp(point.suspects[0].theta[0]))
     wide, solid = as_blocks(request.structure, s, point, request.densest)

@@ -219,7 +219,7 @@ def test_a_mass_at_one_place_is_no_rival_of_itself_spread_out(other, away):
         Some(kind=kind, xyz=xyz, single=None, where=[{}])
         for kind, xyz in zip(kinds, places, strict=True)
     ]
-    s = Some(problem=Some(catalogue=catalogue), effort=Some(apart=0.1), size=1.0)
+    s = Some(problem=Some(catalogue=catalogue), size=1.25)
     best, rival = (Some(suspects=(Suspect(k, 0, (0.0,)),)) for k in (0, 1))
     told = contenders(s, Found((None, best), ((), (rival,))), 1)
     assert (rival in told) == (away > 0.0 or other is ground_spring)
@@ -234,7 +234,7 @@ def test_a_support_that_turns_is_another_explanation_than_one_that_only_moves(
 ):
     where = [{"components": [3], **more}, {"components": components}]
     support = Some(kind="support", xyz=np.zeros((2, 3)), where=where, single=None)
-    searcher = Some(problem=Some(catalogue=[support]), effort=Some(apart=0.1), size=1.0)
+    searcher = Some(problem=Some(catalogue=[support]), size=1.25)
     best, rival = (Some(suspects=(Some(kind=0, row=row),)) for row in (0, 1))
     found = Found((Some(suspects=()), best), ((), (rival,)))
     assert len(contenders(searcher, found, 1)) == others

@@ -9,7 +9,6 @@ from tests.core.discovery.strings import N, hidden, searcher
 
 from trueup.core.discovery.effects import KINDS
 from trueup.core.discovery.effects.candidates import Suspect, together
-from trueup.core.discovery.likelihood.likelihood_numbers import Effort
 from trueup.core.discovery.likelihood.map_fit import evaluate, fit, promised
 from trueup.core.discovery.search import coarse_scan, moves
 from trueup.core.discovery.search.patch_reshaping import options_beside
@@ -27,9 +26,9 @@ MASS, SPRING, ABSORBER = range(3)
         (Suspect(SPRING, 9, (np.log(3000.0),)), Suspect(MASS, 20, (0.0,))),
     ],
 )
-def test_on_its_own_lowest_modes_a_hypothesis_is_what_it_was(held):
+def test_on_its_own_lowest_modes_a_hypothesis_is_what_it_was(held, monkeypatch):
+    monkeypatch.setattr(moves, "SEARCH", replace(SEARCH, search_modes=18))
     s = searcher(hidden(tension=1.1))
-    s = replace(s, effort=Effort(search_modes=18))
     state = evaluate(s.problem, np.array([0.05, 0.0]), held)
     small, here = s.local(state)
     assert small.basis.size <= 18 < s.problem.basis.size
@@ -49,7 +48,7 @@ def test_two_masses_side_by_side_are_one_between_them_on_points_and_patches_alik
     beside = [b for _, b in s.branches(light, 9) if b.kind in (MASS, 3)]
     spots = p.catalogue[MASS].spots
     assert beside
-    assert min(np.linalg.norm(spots[b.row] - spots[9]) for b in beside) >= s.effort.apart * s.size
+    assert min(np.linalg.norm(spots[b.row] - spots[9]) for b in beside) >= SEARCH.apart * s.size
 
 
 def spread_over(s, count):
@@ -154,7 +153,7 @@ def test_branches_are_ranked_by_what_is_left_once_the_known_parameters_follow():
     s = searcher(hidden(tension=1.3, masses=[(9, 2.0)]))
     state = evaluate(s.problem, np.zeros(2), ())
     small, here = s.local(state)
-    found = s.branches(state, 3, lambda p: p)
+    found = s.branches(state, 3, soft=False)
     scores = [score for score, _ in found]
     assert scores == sorted(scores)
     for score, b in found:

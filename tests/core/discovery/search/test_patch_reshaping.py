@@ -15,7 +15,6 @@ from trueup.core.discovery.effects.candidates import Suspect
 from trueup.core.discovery.effects.effect_laws import FactorLaw
 from trueup.core.discovery.effects.element_patches import Patch, on_patches
 from trueup.core.discovery.likelihood.hypothesis import Prior, Problem
-from trueup.core.discovery.likelihood.likelihood_numbers import Effort
 from trueup.core.discovery.likelihood.map_fit import fit
 from trueup.core.discovery.likelihood.mode_likelihood import Evidence, Noise
 from trueup.core.discovery.reduction.elements_and_supports import Structure
@@ -125,7 +124,7 @@ def searching(structure, K, added, catalogue):
     )  # fmt: skip
     every = tuple(np.arange(len(c)) for c in catalogue)
     size = float(np.hypot(NX, NY))
-    return Searcher(problem, every, (0,), np.zeros(1), size, Effort(), by_the_whole_test)
+    return Searcher(problem, every, np.zeros(1), size, by_the_whole_test)
 
 
 @pytest.mark.parametrize("start", [box((4, 6), (3, 5)), box((2, 8), (1, 6)), box((3, 4), (2, 7))])

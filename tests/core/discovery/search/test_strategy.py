@@ -67,8 +67,8 @@ def test_late_kinds_are_looked_for_beside_what_does_not_pay_alone(
     """
     s = searcher(hidden(masses=[(5, 2.0)], absorbers=[(20, 0.8, 1.7)]), modes_out=(4, 10))
     null = s.null()
-    one = s.fitted(null, (Suspect(0, 5, (0.7,)),))
-    tuned = s.fitted(null, (Suspect(2, 20, (-0.2, 0.5)),))
+    one = s.fitted(null, (Suspect(0, 5, (0.7,)),), 6)
+    tuned = s.fitted(null, (Suspect(2, 20, (-0.2, 0.5)),), 6)
     tuned = replace(tuned, objective=one.objective + (left or 0.0), misfit=one.misfit)
     grown, states = [], []
 
@@ -101,7 +101,7 @@ def test_beside_what_is_adequate_absorbers_are_looked_for_where_a_mode_is_astray
 ):
     """An absorber adds a mode; what else an adequate explanation leaves it would imitate."""
     s = searcher(hidden(masses=[(5, 2.0)], absorbers=[(20, 0.8, 1.7)]), modes_out=(4, 10))
-    one = s.fitted(s.null(), (Suspect(0, 5, (0.7,)),))
+    one = s.fitted(s.null(), (Suspect(0, 5, (0.7,)),), 6)
     lost = astray & (np.arange(10) == 3)
     left = Some(error=0.003, noise=0.02, each=np.zeros(10), astray=lost, complete=False)
     s = replace(s, judged=lambda *_: Some(diffuse=left, evidence=0.0))

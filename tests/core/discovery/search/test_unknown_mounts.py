@@ -16,7 +16,7 @@ def on_a_frame(tmp_path, monkeypatch):
     request = asked(tmp_path, monkeypatch)
     s = searching(request)
     row = next(i for i, w in enumerate(s.problem.catalogue[0].where) if w["grids"] == [6])
-    return request, s, s.fitted(s.null(), (Suspect(0, row, HALF),))
+    return request, s, s.fitted(s.null(), (Suspect(0, row, HALF),), 6)
 
 
 def test_a_body_on_a_mount_stands_on_the_spring_that_tunes_it(on_a_frame):
