@@ -13,7 +13,7 @@ from ..likelihood.map_fit import fit
 from .exact_scan import scan
 from .found import noise_scale
 from .model_selection import Scored
-from .moves import Searcher
+from .moves import Searcher, nearest
 from .search_numbers import SEARCH
 
 
@@ -35,7 +35,7 @@ def credible_places(searcher: Searcher, best: Fit, number: int) -> list[Place]:
     suspect, scale = best.suspects[number], noise_scale(searcher.problem, best)
     c = searcher.problem.catalogue[suspect.kind]
     away = np.linalg.norm(c.spots - c.spots[suspect.row], axis=1)
-    near = np.flatnonzero(away < SEARCH.credible_near * searcher.size)[: SEARCH.credible_most]
+    near = nearest(away, SEARCH.credible_near * searcher.size)[: SEARCH.credible_most]
     rows = np.union1d(np.union1d(searcher.coarse[suspect.kind], near), [suspect.row])
     small, here = searcher.without(best, number)
     trials = c.around(suspect.theta, np.array(SEARCH.credible_sizes))

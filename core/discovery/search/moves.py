@@ -185,7 +185,7 @@ class Searcher:
         """Places next to one, nearest first."""
         spots = self.problem.catalogue[kind].spots
         distance = np.linalg.norm(spots - spots[row], axis=1)
-        return _nearest(distance, SEARCH.apart * self.size)[: SEARCH.around]
+        return nearest(distance, SEARCH.apart * self.size)[: SEARCH.around]
 
     def _taken(self, state: Fit, kind: int, rows: Ints) -> Bools:
         """Places too near to a suspect of the same kind or nature to be a second one, (n,)."""
@@ -289,7 +289,7 @@ class Searcher:
     ) -> list[tuple[float, Suspect]]:
         """Return what is best of a kind at `count` places near by, from so far `away` (n,)."""
         c = self.problem.catalogue[kind]
-        rows = _some(_nearest(away, SEARCH.near * self.size), count)
+        rows = _some(nearest(away, SEARCH.near * self.size), count)
         rows = rows[~self._taken(here, kind, rows)]
         if not len(rows):
             return []
@@ -359,7 +359,7 @@ class Searcher:
         away, beside = (
             np.linalg.norm(e.spots - e.spots[s.row], axis=1) for e, s in ((c, one), (d, other))
         )
-        for row in _some(_nearest(away, SEARCH.near * self.size), SEARCH.around):
+        for row in _some(nearest(away, SEARCH.near * self.size), SEARCH.around):
             moved = replace(state, suspects=state.instead(p, replace(one, row=int(row))))
             here = evaluate(soft, state.nuisance, moved.others(q))
             near = beside, np.array(other.theta), SEARCH.neighbours
@@ -386,7 +386,7 @@ def _local(problem: Problem, state: Fit, n: int) -> tuple[Problem, Fit]:
     return small, evaluate(small, state.nuisance, state.suspects)
 
 
-def _nearest(away: Floats, most: float) -> Ints:
+def nearest(away: Floats, most: float) -> Ints:
     """Return the rows of what is so far `away` (n,) at most, nearest first."""
     rows = np.flatnonzero(away <= most)
     return np.asarray(rows[np.argsort(away[rows], kind="stable")])

@@ -80,7 +80,7 @@ class SearchNumbers:
     rest: float = number(0.2, "of the gain of the first", "that the second of them has to gain by the error of the model", "rests of two masses that were spread over parts of a wheel: 6 and 14 %")
     per_mode: float = number(5.0, "degrees of freedom", "of a test mode: its frequency and what its shape says independently")
     credible: float = number(6.0, LN, "explanations no further behind are told", "likelihood ratio of exp(3)")
-    credible_near: float = number(0.15, SIZE, "places nearer are all looked at")
+    credible_near: float = number(0.15, SIZE, "places nearer are looked at, the nearest first")
     credible_most: int = number(400, "places", "of them, at most", "time")
     credible_sizes: tuple[float, ...] = number((-0.6, -0.3, 0.0, 0.3, 0.6), "θ", "steps of the magnitude with which they are")
     credible_fitted: int = number(30, "places", "at which all else follows, the most promising")
