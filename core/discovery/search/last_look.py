@@ -18,7 +18,7 @@ from ..effects.candidates import Suspect
 from ..effects.element_patches import area_of, gives
 from ..likelihood.hypothesis import Fit
 from ..likelihood.map_fit import evaluate
-from .exact_scan import scan
+from .coarse_scan import look
 from .found import objective_of
 from .model_selection import Scored, needed, ranked, says_else
 from .moves import Searcher
@@ -71,7 +71,7 @@ def _elsewhere(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
 def _other_kinds(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
     """Return fits with effects of another nature near a suspect in its place, the best of each.
 
-    On the same matrix, however well they fit: what a beam's joint does a softer beam does as well.
+    However well they fit: a beam's joint may be a softer beam, a heavy patch a soft one.
     """
     s = state.suspects[q]
     own = searcher.problem.catalogue[s.kind]
@@ -81,12 +81,13 @@ def _other_kinds(searcher: Searcher, state: Fit, q: int) -> list[Fit]:
     for kind, c in enumerate(searcher.problem.catalogue):
         away = np.linalg.norm(c.xyz - own.xyz[s.row], axis=1)
         rows = np.flatnonzero(away < SEARCH.near * searcher.size)
-        alike = c.kind is own.kind or c.kind.joins(own.kind) or c.law.acts_on != own.law.acts_on
+        alike = c.kind is own.kind or c.kind.joins(own.kind)
         if alike or c.kind.late or not len(rows):
             continue
-        cost = scan(small, here, kind, rows, c.trials) + c.surprise(c.trials)
-        row, size = np.unravel_index(cost.argmin(), cost.shape)
-        found.append((float(cost.min()), Suspect(kind, int(rows[row]), tuple(c.trials[size]))))
+        seen = look(small, here, kind, rows)
+        best = int(seen.cost.argmin())
+        new = Suspect(kind, int(seen.rows[best]), tuple(seen.theta[best]))
+        found.append((float(seen.cost[best]), new))
     nearest = sorted(found, key=lambda f: f[0])[: SEARCH.look_judged]
     return [
         searcher.fitted(without, (*without.suspects, new), SEARCH.steps_new, soften=True)
