@@ -30,9 +30,10 @@ def in_deck(x: Floats, information: Floats, scale: float, spread: Floats) -> InD
 
     Backward elimination: the unknown that is fewest standard deviations from 0 is held there, the
     others follow to first order, until each that is left is clear (Draper, Smith: Applied
-    Regression Analysis, chapter 15). `information` (m, m) is half the Hessian of what was
-    minimised over these and further unknowns behind them, `scale` the noise's variance over the
-    assumed one, `spread` (n,) how far they may be off beforehand.
+    Regression Analysis, chapter 15), whichever of the others are off: no interval that is told
+    holds the deck's value. `information` (m, m) is half the Hessian of what was minimised over
+    these and further unknowns behind them, `scale` the noise's variance over the assumed one,
+    `spread` (n,) how far they may be off beforehand.
     """
     whole = scale * np.linalg.pinv(information)[: len(x), : len(x)]
     C, alone, clear = whole, np.array(x), np.ones(len(x), bool)
@@ -41,7 +42,10 @@ def in_deck(x: Floats, information: Floats, scale: float, spread: Floats) -> InD
         own = np.sqrt(np.maximum(np.diag(C), np.finfo(float).tiny))
         k = left[np.argmin(np.abs(alone[left]) / own[left])]
         if abs(alone[k]) > LIKELIHOOD.significant * own[k]:
-            break
+            off = np.abs(alone[left]) / _averaged(x, whole, clear, spread)
+            if off.min() > LIKELIHOOD.interval:
+                break
+            k = left[np.argmin(off)]
         follow = C[:, k] / own[k] ** 2
         alone = alone - follow * alone[k]
         C = C - np.outer(follow, C[k])

@@ -11,6 +11,7 @@ from ..effects.candidates import Candidates, Suspect, places_of
 from ..findings import Alternative, Discovery, Finding, MovedParameter, Where
 from ..likelihood.elimination import InDeck
 from ..likelihood.hypothesis import Fit
+from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..likelihood.request import Request
 from ..model_error.model_error_numbers import MODEL_ERROR
 from ..posterior.test_design import further_modes, further_sensors
@@ -192,7 +193,7 @@ def _finding(o: _Outcome, number: int, place: int, deviation: Floats) -> Finding
         off = min(np.sqrt(2.0 * max(o.whole.last, 1.0)), NARRATIVE.off_one)
         spread = np.minimum(spread, np.abs(s.theta) / off)
     spread = np.hypot(spread, between(places))
-    half = NARRATIVE.interval * spread[:, None]
+    half = LIKELIHOOD.interval * spread[:, None]
     intervals = sizes[:, None] * np.exp(half * np.array([-1.0, 1.0]))
     magnitude = magnitude_of(c, row, sizes, intervals, masses)
     first = intervals[0] * (masses.card if c.kind.magnitudes[0].is_mass else 1.0)

@@ -87,7 +87,8 @@ def _finding(request: Request, w: Weighed) -> tuple[Finding, float]:
     weight = np.where(near[k], found.weights, 0.0) / mass[k]
     mean = float(weight @ found.log_size)
     variance = float(weight @ (found.log_deviation**2 + (found.log_size - mean) ** 2))
-    spread = NARRATIVE.interval * float(np.hypot(np.sqrt(variance), KIND.magnitudes[0].place_error))
+    place_error = KIND.magnitudes[0].place_error
+    spread = LIKELIHOOD.interval * float(np.hypot(np.sqrt(variance), place_error))
     c, row = float(np.exp(mean)), int(found.rows[k])
     interval = float(np.exp(mean - spread)), float(np.exp(mean + spread))
     components = list(places.where[row]["components"])

@@ -17,7 +17,6 @@ class NarrativeNumbers:
     doubted: float = number(0.4, "-", "the same where none is, one proposed or not", CALIBRATED)
     nothing: float = number(0.92, "-", "share of answers without an effect that are right", CALIBRATED)
     like_model: float = number(0.8, "-", "share of sensors said to be turned or to read too much or little that are", CALIBRATED)
-    interval: float = number(1.96, "standard deviations", "half of a 95 % interval", "normal distribution")
     held: float = number(10.0, "of the structure's mass", "above which a mass at one place is none: the test is held there", "the place moves less than a tenth of what it would")
     hardly: float = number(20.0, "-", "quotient of the ends of an interval from which on a magnitude is hardly known")
     alternatives: int = number(5, "alternatives", "that are told, at most", READER)

@@ -8,6 +8,7 @@ import numpy as np
 from ...sensors.sensor_map import Observation
 from ..faults import FAULTS, Fault
 from ..findings import Finding, Where
+from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..sensor_faults.diagnosis import Verdicts
 from .narrative_numbers import NARRATIVE
 
@@ -50,7 +51,7 @@ def _accusation(seen: Observation, f: Fault) -> Finding:
     interval = None
     if kind.magnitude:
         magnitude = {kind.magnitude: f.factor, **({"axis": list(f.axis)} if f.axis else {})}
-        off = NARRATIVE.interval * f.deviation
+        off = LIKELIHOOD.interval * f.deviation
         interval = (f.factor - off, f.factor + off)
     sure = f.confidence * (NARRATIVE.like_model if kind.like_model else 1.0)
     return Finding("test", f.kind, where, magnitude, interval, (), sure, f"{said}.")
