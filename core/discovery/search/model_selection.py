@@ -137,20 +137,24 @@ def needed(judged: Judged) -> float:
 def kept(searcher: Searcher, levels: Sequence[Scored]) -> int:
     """Return the number of the richest hypothesis that is told beside the poorer ones.
 
-    0 where it gains less over the first than `worth_telling`.
+    0 where it gains less over the first than `worth_telling`, or leaves more than that does.
     """
     best = 0
     for k, level in enumerate(levels[1:], start=1):
         if told_beside(searcher, level, levels[best], levels[0]):
             best = k
     alone, judged = levels[0].judged, levels[best].judged
-    if (
-        alone
-        and judged
-        and levels[best].score - levels[0].score < worth_telling(alone, judged.diffuse.error)
-    ):
-        return 0
+    if alone and judged and best:
+        least = worth_telling(alone, judged.diffuse.error)
+        if levels[best].score - levels[0].score < least or _leaves_more(judged, alone):
+            return 0
     return best
+
+
+def _leaves_more(judged: Judged, alone: Judged) -> bool:
+    """Whether a hypothesis leaves more error, and no fewer modes that nothing explains."""
+    astray, before = (np.count_nonzero(j.diffuse.astray) for j in (judged, alone))
+    return bool(judged.diffuse.error > alone.diffuse.error and astray >= before)
 
 
 def worth_telling(alone: Judged, error: float) -> float:
