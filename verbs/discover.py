@@ -144,6 +144,7 @@ def discover(
     borne = borne_out(found, *pairs, coarse, int(np.count_nonzero(elastic)), readings)
     if asked.adopt != "significant" or borne.adopted != found.adopted:
         borne = written(borne, asked.adopt)
+    if borne.adopted != found.adopted or borne.parameters != found.parameters:
         done = completed(borne)
     found = borne
     after = done.after.compared

@@ -33,6 +33,10 @@ class SolvedModel:
 
 
 C = TypeVar("C")
+_FINER = (
+    "a finer mesh: this one may well leave what frequencies are off by, and known parameters "
+    "may; the test alone does not tell which"
+)
 
 
 def upheld(found: Discovery, complete: Callable[[Discovery], C]) -> tuple[Discovery, C]:
@@ -69,9 +73,21 @@ def borne_out(
     more = len(after.pairs) - len(before.pairs)
     helps = more > 0 or _left(before, after, lowered) < 1.0
     if found.verdict != "effect" and not any(f.kind in KINDS for f in found.findings):
+        moved = any(m.written != 1.0 for m in found.parameters)
+        if moved and more <= 0 and not _nearer(before, after):
+            found = _or_a_mesh(found)
         found = _seen_in_pairs(found, len(after.pairs), tests, readings, helps)
         return _as_far_off_as_a_mesh(found, before)
     return found if helps or damped or not found.completes else _withdrawn(found)
+
+
+def _nearer(before: Correlation, after: Correlation) -> bool:
+    """Whether the modes that pair both times deviate less in frequency, or clearly in shape."""
+    both = {p.test for p in before.pairs} & {p.test for p in after.pairs}
+    was, now = ([p for p in c.pairs if p.test in both] for c in (before, after))
+    off, far = (sum(abs(p.deviation_percent) for p in pairs) for pairs in (now, was))
+    apart, unlike = (sum(1.0 - p.mac for p in pairs) for pairs in (now, was))
+    return off < far or apart < SCREENING.alike * unlike
 
 
 def _left(before: Correlation, after: Correlation, lowered: Floats) -> float:
@@ -140,11 +156,13 @@ def _as_far_off_as_a_mesh(found: Discovery, before: Correlation) -> Discovery:
     off = [abs(p.deviation_percent) / 100.0 for p in before.pairs]
     if found.verdict != "no_gap" or not off or np.mean(off) <= SCREENING.repeats:
         return found
-    why = (
-        "a finer mesh: this one may well leave what frequencies are off by, and known parameters "
-        "may; the test alone does not tell which"
-    )
-    return replace(found, verdict="parameters_only", would_decide=(why, *found.would_decide))
+    return _or_a_mesh(replace(found, verdict="parameters_only"))
+
+
+def _or_a_mesh(found: Discovery) -> Discovery:
+    """Return what was found with no known parameter said to be off: a finer mesh would tell."""
+    stay = tuple(replace(m, significant=False, written=1.0) for m in found.parameters)
+    return replace(found, parameters=stay, would_decide=(_FINER, *found.would_decide))
 
 
 def _in_doubt(found: Discovery, why: str, proposal: bool) -> Discovery:
