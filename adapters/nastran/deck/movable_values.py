@@ -26,7 +26,8 @@ class Doubt:
         Bounds of the factor.
     binding : str
         Field that, where it is not blank, moves together with all of `fields`: a product of
-        inertia has limits that follow theirs.
+        inertia has limits that follow theirs, a shear modulus that is written is no other than one
+        that is left to follow.
     """
 
     fields: tuple[str, ...]

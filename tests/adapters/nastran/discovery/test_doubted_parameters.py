@@ -123,6 +123,25 @@ def test_a_product_of_inertia_binds_both_inertias(tmp_path):
     assert len(build_structure(deck, every.specs).model.parameters) == len(every.specs)
 
 
+def test_a_modulus_is_the_same_whether_that_of_shear_is_written_or_follows(tmp_path):
+    """Written, it had stayed where it was, and a soft patch of a panel was taken for a modulus."""
+
+    def stiffness(shear, name):
+        path = tmp_path / "column.bdf"
+        text = column(None, 17700.0)
+        path.write_text(text.replace("MAT1,1,210000.,,", f"MAT1,1,210000.,{shear},"))
+        deck = read_deck(path)
+        every = doubted(deck, ())
+        p = np.ones(len(every.specs))
+        p[[s.name for s in every.specs].index(name)] = 1.2
+        return build_structure(deck, every.specs).model.K(p).toarray()
+
+    written = stiffness("80769.230769230769", "MAT1 1 E+G")
+    np.testing.assert_allclose(
+        written, stiffness("", "MAT1 1 E"), atol=1e-9 * np.abs(written).max()
+    )
+
+
 def test_ports_that_no_measured_mode_notices_stay_as_they_are():
     """They made up for what the model errs by: one came out at 0.54 of its stiffness."""
     deck = read_deck(DUCT / "duct.bdf")
