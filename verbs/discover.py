@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from ..core.arrays import Bools
 from ..core.correlation.comparison import Comparison, Placed, compare
@@ -128,7 +129,8 @@ def discover(
     maps = _maps(before, structure, solution)
     progress("discovering")
     request, unplaced = _request(deck, structure, known.spreads, solution, before, side, elastic)
-    found = core.discover(request, progress)
+    with threadpool_limits(1, "blas"):  # on small matrices threads but wait for each other
+        found = core.discover(request, progress)
     progress("completing the deck and solving it again")
 
     def completed(found: Discovery) -> CompletedDeck:

@@ -22,7 +22,11 @@ CARDS = (
         f"MID:i! E:r G:r NU:r {_RHO} A:r=0. TREF:r=0. GE:r=0. / ST:r=0. SC:r=0. SS:r=0. MCSID:i=0",
         "mid",
         space="material",
-        moves=Moves(also={"ALPHA": "A"}, linear=("E", "RHO"), doubt=Doubt(("E",), 0.1, 0.7, 1.4, "G")),
+        moves=Moves(
+            also={"ALPHA": "A"},
+            linear=("E", "RHO"),
+            doubt=Doubt(("E",), 0.1, 0.7, 1.4, binding="G"),
+        ),
     ),
     Card(
         "MAT2",
