@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import trueup
+from trueup.core.discovery import discover as core
 
 DUCT = Path(__file__).parents[2] / "fixtures" / "duct"
 FILES = (DUCT / "duct.bdf", DUCT / "duct_test.unv")
@@ -56,6 +58,20 @@ def test_what_an_update_saved_is_opened_again(better: trueup.Updated, tmp_path: 
     again = saved_and_opened(better, tmp_path)
     assert again.history[0].factors.tolist() == [1.0]
     assert set(again.content.modes) == {"test", "analysis", "updated"}
+
+
+def test_a_discovery_runs_on_one_thread_of_the_linear_algebra(monkeypatch: Any) -> None:
+    """On two, on a busy machine, it took sixteen times as long."""
+    threads: list[int] = []
+
+    def stopped(*_: object) -> None:
+        threads.extend(p["num_threads"] for p in threadpool_info() if p["user_api"] == "blas")
+        raise trueup.TrueupError("enough")
+
+    monkeypatch.setattr(core, "discover", stopped)
+    with threadpool_limits(2, "blas"), pytest.raises(trueup.TrueupError, match="enough"):
+        trueup.discover(*FILES, deck_length_unit="mm")
+    assert set(threads) == {1}
 
 
 @pytest.mark.slow
