@@ -86,7 +86,8 @@ def build_discovery(
         word = "undecided"
     sure = whole.posterior * _share(word, bool(suspects), whole)
     told = whole.shape is not None or whole.reach is not None or whole.unexplained
-    if not adequate or (word == "undecided" and (told or not decide)):
+    in_fields = word == "parameters_only" and whole.in_fields
+    if not adequate or in_fields or (word == "undecided" and (told or not decide)):
         decide = (*left_over(whole, request.numbers), *decide)
     decide = (*held_said(held), *decide)
     return Discovery(

@@ -6,7 +6,6 @@ from ...arrays import Ints
 from ..effects.sentence_parts import mode_ranges
 from ..model_error.diffuse_fit import Drift
 from ..model_error.geometry_error import Misshapen
-from ..model_error.model_error_numbers import MODEL_ERROR
 from ..model_error.set_up_fields import MESH, SENSORS, SUSPENSION
 from ..search.completeness import Completeness
 
@@ -29,7 +28,7 @@ def left_over(whole: Completeness, numbers: Ints) -> tuple[str, ...]:
         )
     if whole.shape is not None:
         said.append(f"it looks like {_shape(whole.shape)}")
-    elif whole.reach is None and best.drifts and best.evidence - best.bare > MODEL_ERROR.seen:
+    elif whole.reach is None and whole.in_fields:
         said.append(f"it looks like {_drift(best.drifts[0])}")
     said.append("further modes or sensors, or an effect that the catalogue does not have")
     return ("; ".join(said),)

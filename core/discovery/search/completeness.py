@@ -139,6 +139,11 @@ class Completeness:
         return self.best.diffuse.noise < MODEL_ERROR.legible
 
     @property
+    def in_fields(self) -> bool:
+        """Whether smooth fields beside the best explanation gain enough to be spoken of."""
+        return bool(self.best.drifts and self.best.evidence - self.best.bare > MODEL_ERROR.seen)
+
+    @property
     def lacks_nothing(self) -> bool:
         """See `lacks_nothing`."""
         return lacks_nothing(self.deck, self.alone)

@@ -80,6 +80,16 @@ def test_known_parameters_that_gain_little_do_not_show_that_nothing_is_missing()
     assert not found(before=0.01).lacks_nothing
 
 
+@pytest.mark.parametrize(
+    ("gain", "drifts", "told"), [(9.0, 1, True), (2.0, 1, False), (9.0, 0, False)]
+)
+def test_smooth_fields_are_spoken_of_where_they_gain(gain, drifts, told):
+    """A plate 7 % thinner in half was told to lack nothing, with no word of where."""
+    whole = found()
+    best = Some(**{**vars(whole.best), "evidence": gain, "bare": 0.0, "drifts": ("y",) * drifts})
+    assert replace(whole, best=best).in_fields == told
+
+
 def beside(gain, error=0.001, mesh=0.0, scatter=0.0):
     deck = judged(np.zeros(10), error=error, mesh=mesh, scatter=scatter)
     alone = judged(np.zeros(10), error=0.0005, evidence=gain)
