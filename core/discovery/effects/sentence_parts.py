@@ -5,22 +5,24 @@ from collections.abc import Sequence
 from .effect_numbers import EFFECTS
 
 
-def odds(ratio: float, other: str = "") -> str:
+def odds(ratio: float, other: str = "", most: float = EFFECTS.odds_most) -> str:
     """Say how many times less likely something is than what was found, or more.
 
     `ratio` is the likelihood of what was found, `other` where it has to be said, over its own.
+    More than `most` times is not said, and no figure at all where that is next to nothing.
     """
     if EFFECTS.alike > ratio > 1.0 / EFFECTS.alike:
         return "about as likely" + (other and f" as {other}")
-    less = ratio > 1.0
-    count = _count(ratio if less else 1.0 / max(ratio, 1.0 / EFFECTS.odds_most))
-    return f"{count} times {'less' if less else 'more'} likely" + (other and f" than {other}")
+    less, most = ratio > 1.0, min(most, EFFECTS.odds_most)
+    count = _count(ratio if less else 1.0 / max(ratio, 1.0 / most), most)
+    way = "less" if less else "more"
+    return f"{count}{way} likely" + (other and f" than {other}")
 
 
-def _count(ratio: float) -> str:
-    if ratio >= EFFECTS.odds_most:
-        return f"more than {EFFECTS.odds_most:.0f}"
-    return f"{ratio:.2g}"
+def _count(ratio: float, most: float) -> str:
+    if most < EFFECTS.alike:
+        return ""
+    return f"more than {most:.2g} times " if ratio >= most else f"{ratio:.2g} times "
 
 
 def mode_ranges(modes: Sequence[int]) -> str:

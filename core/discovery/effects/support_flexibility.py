@@ -42,7 +42,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     Every fixed direction of a support alone, all its rotations or translations alike, those of
     every foot alike, and one direction over groups of supports that are neighbours. Along an edge
     of shells the groups are its stretches: they move along any axis, turn about the edge, or do
-    both, where a stretch on springs turns freely. The stiffness counts over all grids of a place,
+    both, where a stretch on springs turns freely, about the edge or at all. The stiffness counts over all grids of a place,
     for each of its directions.
     """
     s = structure.supports
@@ -64,7 +64,7 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
         made.append(_released(s, list(_groups(s, own[~on_edge[own]], scale.size)), carrying))
     for component in range(1, 7):
         made.append(_released(s, list(_stretches(s, edges, component, scale.size)), carrying))
-    made.append(_released(s, list(_hinges(s, edges, scale.size)), carrying))
+    made += (_released(s, places, carrying) for places in _hinges(s, edges, scale.size))
     return tuple(c for c in made if c is not None)
 
 
@@ -162,19 +162,29 @@ def _stretches(s: Supports, edges: Sequence[Edge], component: int, size: float) 
                 yield _Place(rows[part], rows[:0], (number, first, last))
 
 
-def _hinges(s: Supports, edges: Sequence[Edge], size: float) -> Iterator[_Place]:
-    """Stretches of edges that move out of the plane of their shells and turn freely."""
+def _hinges(s: Supports, edges: Sequence[Edge], size: float) -> tuple[list[_Place], list[_Place]]:
+    """Stretches of edges that move out of the plane of their shells and turn freely.
+
+    Of the first about the edge alone, of the others about every axis: an edge that is not clamped
+    bends along itself.
+    """
+    hinged, loose = [], []
     for number, e in enumerate(edges):
+        turns = np.array([_rows(s, e, c) for c in (4, 5, 6)])
         out, about = (
             max(
-                (np.where(_near(s, r, d), r, -1) for r in (_rows(s, e, c) for c in components)),
+                (np.where(_near(s, r, d), r, -1) for r in rows),
                 key=lambda rows: np.count_nonzero(rows >= 0),
             )
-            for d, components in ((e.normal, (1, 2, 3)), (e.along, (4, 5, 6)))
+            for d, rows in ((e.normal, [_rows(s, e, c) for c in (1, 2, 3)]), (e.along, turns))
         )
         for first, last, part in e.stretches(size):
             if np.all(out[part] >= 0) and np.all(about[part] >= 0):
-                yield _Place(out[part], about[part], (number, first, last))
+                every, ends = turns[:, part][turns[:, part] >= 0], (number, first, last)
+                hinged.append(_Place(out[part], about[part], ends))
+                if len(every) > len(about[part]):
+                    loose.append(_Place(out[part], every, ends))
+    return hinged, loose
 
 
 def _rows(s: Supports, e: Edge, component: int) -> Ints:

@@ -93,7 +93,7 @@ def build_discovery(
     return Discovery(
         word,
         (*(replace(f, confidence=sure) for f in findings), *accused),
-        _alternatives(outcome),
+        _alternatives(outcome, sure / (1.0 - sure)),
         _moved(known),
         noise_scale(searcher.problem, outcome.best),
         2.0 * whole.gain,
@@ -253,10 +253,11 @@ def _moved(known: InDeck) -> tuple[MovedParameter, ...]:
     )
 
 
-def _alternatives(o: _Outcome) -> tuple[Alternative, ...]:
+def _alternatives(o: _Outcome, most: float) -> tuple[Alternative, ...]:
     """Best rival of every combination of kinds, and the known parameters alone.
 
-    One of the kinds that were found counts where it says something else: another place.
+    One of the kinds that were found counts where it says something else: another place. None is
+    said to be more than `most` times less likely: as much as the confidence in the best leaves.
     """
 
     def named(f: Fit) -> list[tuple[Candidates, int]]:
@@ -275,10 +276,10 @@ def _alternatives(o: _Outcome) -> tuple[Alternative, ...]:
         xyz = [c.xyz[row] for c, row in named(f)]
         regions = tuple(spot_of(o.request.structure.model.geometry, c, row) for c, row in named(f))
         said = effects_said(kinds, regions)
-        out.append(alternative(kinds, xyz, o.times_less_likely(f), said, regions))
+        out.append(alternative(kinds, xyz, o.times_less_likely(f), said, regions, most=most))
     if o.accepted:
         ratio = o.times_less_likely(o.found.levels[0])
-        out.append(alternative((), (), ratio, "the known parameters alone"))
+        out.append(alternative((), (), ratio, "the known parameters alone", most=most))
     return tuple(sorted(out, key=lambda a: a.times_less_likely))[: NARRATIVE.alternatives]
 
 

@@ -24,9 +24,13 @@ def alternative(
     where: str,
     regions: tuple[str, ...] = (),
     other: str = "",
+    most: float = EFFECTS.odds_most,
 ) -> Alternative:
-    """Return what is `ratio` times less likely than what was found, or than some `other`."""
-    xyz, said = tuple(tuple(x.tolist()) for x in places), odds(ratio, other)
+    """Return what is `ratio` times less likely than what was found, or than some `other`.
+
+    In words no more than `most` times.
+    """
+    xyz, said = tuple(tuple(x.tolist()) for x in places), odds(ratio, other, most)
     return Alternative(kinds, xyz, ratio, f"{where}: {said}", where, said, regions)
 
 

@@ -46,6 +46,22 @@ def test_a_likelihood_ratio_is_said_the_way_it_points(ratio, said):
     assert odds(ratio) == said
 
 
+@pytest.mark.parametrize(
+    ("ratio", "most", "said"),
+    [
+        (1e26, 9.0, "more than 9 times less likely"),
+        (4.0, 9.0, "4 times less likely"),
+        (1e26, 1.5, "more than 1.5 times less likely"),
+        (1e26, 0.67, "less likely"),
+        (0.2, 0.67, "more likely"),
+        (1.05, 0.67, "about as likely"),
+        (1e26, 50.0, "more than 10 times less likely"),
+    ],
+)
+def test_no_more_is_said_than_the_confidence_in_the_best_supports(ratio, most, said):
+    assert odds(ratio, most=most) == said
+
+
 def test_odds_beside_something_named():
     assert odds(9.8, "none") == "9.8 times less likely than none"
     assert odds(1.0, "none") == "about as likely as none"

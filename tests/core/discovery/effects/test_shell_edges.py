@@ -63,7 +63,7 @@ def _row(kinds, grids, components, free=None):
     raise AssertionError(f"no candidate {grids} {components} {free}")
 
 
-@pytest.mark.parametrize(("components", "free"), [([3], None), ([4], None), ([3], [4])])
+@pytest.mark.parametrize(("components", "free"), [([3], None), ([4], None), ([3], [4]), ([3], [4, 5, 6])])
 def test_a_stretch_takes_from_the_stiffness_what_springs_there_would(structure, components, free):
     c, row = _row(_kinds(structure), [2, 3, 4], components, free)
     s, k = structure.supports, 50.0
@@ -94,4 +94,4 @@ def test_beside_a_stretch_are_longer_and_shorter_ones_and_its_other_ways_to_give
             assert w["grids"] == [2, 3, 4]
             others.add((*w["components"], *w.get("free_components", ())))
     assert own == {(2, 3), (3, 4), (1, 2, 3), (3, 4, 5), (1, 2, 3, 4), (2, 3, 4, 5)}
-    assert others == {(1,), (2,), (3,), (4,)}
+    assert others == {(1,), (2,), (3,), (4,), (3, 4, 5, 6)}
