@@ -143,7 +143,8 @@ class Discovery:
     frozen cases in which an answer like it was right; `foretold` by how many standard deviations
     modes held out agree that it foretells them better than these.
     By `mesh`, relative, the deck's mesh makes frequencies too low on average, which no parameter
-    makes up for. `proposal` says that the effects explain much and foretell, but leave more than
+    makes up for. `looks_like` names an error of the model without a place that would explain what
+    is left, where one does. `proposal` says that the effects explain much and foretell, but leave more than
     right models do: the verdict is ``undecided``, and the deck is completed by them all the same.
     """
 
@@ -167,6 +168,7 @@ class Discovery:
     unexplained: tuple[int, ...] = ()
     proposal: bool = False
     mesh: float = 0.0
+    looks_like: str = ""
     damping: ModalDamping | None = None
     responses: ResponseGap | None = None
 

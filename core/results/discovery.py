@@ -44,7 +44,8 @@ class JudgementTable:
     `adequacy` is the probability that a right model would leave a misfit as large: an error as
     large, and as many modes `unexplained`: test modes that no mode of the model explains.
     By `mesh`, relative, the deck's mesh makes frequencies too low on average: no parameter makes
-    up for that. `proposal` says that the deck is completed by what was found though more is left
+    up for that. `looks_like` names an error without a place that would explain what is left, where
+    one does. `proposal` says that the deck is completed by what was found though more is left
     than right models leave, and the verdict ``undecided``.
     """
 
@@ -58,6 +59,7 @@ class JudgementTable:
     unexplained: tuple[int, ...] = ()
     proposal: bool = False
     mesh: float = 0.0
+    looks_like: str = ""
 
     @classmethod
     def of(cls, found: Discovery) -> Self:
@@ -73,6 +75,7 @@ class JudgementTable:
             found.unexplained,
             found.proposal,
             found.mesh,
+            found.looks_like,
         )
 
 

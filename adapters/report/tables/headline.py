@@ -93,6 +93,8 @@ def _discover(answer: DiscoverTables) -> list[str]:
         told.append(_sentence(f"the best explanation so far: {best}"))
     elif best:
         told = [_sentence(best)]
+    elif verdict == "undecided" and (look := answer.judgement.looks_like):
+        told.append(_sentence(f"It looks like {look}, which no listed effect is"))
     if verdict in ("parameters_only", "test_fault"):
         told += moved
     if not answer.adopted and verdict == "undecided":

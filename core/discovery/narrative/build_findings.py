@@ -28,7 +28,7 @@ from ..search.model_selection import (
 from ..search.moves import Searcher
 from ..sensor_faults.diagnosis import Verdicts
 from .held_places import held_said, is_held
-from .model_error_words import left_over
+from .model_error_words import left_over, looks_like
 from .narrative_numbers import NARRATIVE
 from .open_frame import frame_needed, images
 from .sensor_findings import accusations, remarks
@@ -87,7 +87,8 @@ def build_discovery(
     sure = whole.posterior * _share(word, bool(suspects), whole)
     told = whole.shape is not None or whole.reach is not None or whole.unexplained
     in_fields = word == "parameters_only" and whole.in_fields
-    if not adequate or in_fields or (word == "undecided" and (told or not decide)):
+    looks = not adequate or in_fields or (word == "undecided" and (bool(told) or not decide))
+    if looks:
         decide = (*left_over(whole, request.numbers), *decide)
     decide = (*held_said(held), *decide)
     return Discovery(
@@ -111,6 +112,7 @@ def build_discovery(
         unexplained=tuple(int(request.numbers[k]) for k in whole.unexplained),
         proposal=proposal,
         mesh=known.mesh,
+        looks_like=looks_like(whole) if looks else "",
     )
 
 

@@ -22,16 +22,22 @@ def left_over(whole: Completeness, numbers: Ints) -> tuple[str, ...]:
     if whole.unexplained:
         modes = mode_ranges([int(numbers[k]) for k in whole.unexplained])
         said.append(f"nothing explains {modes}")
-    if whole.reach is not None:
-        said.append(
-            f"it looks like supports that reach {whole.reach.far:.2g} deck units further in"
-        )
-    if whole.shape is not None:
-        said.append(f"it looks like {_shape(whole.shape)}")
-    elif whole.reach is None and whole.in_fields:
-        said.append(f"it looks like {_drift(best.drifts[0])}")
+    if look := looks_like(whole):
+        said.append(f"it looks like {look}")
     said.append("further modes or sensors, or an effect that the catalogue does not have")
     return ("; ".join(said),)
+
+
+def looks_like(whole: Completeness) -> str:
+    """Say what an error without a place would be that explains what is left, if any does."""
+    said = []
+    if whole.reach is not None:
+        said.append(f"supports that reach {whole.reach.far:.2g} deck units further in")
+    if whole.shape is not None:
+        said.append(_shape(whole.shape))
+    elif whole.reach is None and whole.in_fields:
+        said.append(_drift(whole.best.drifts[0]))
+    return " and ".join(said)
 
 
 def _shape(s: Misshapen) -> str:

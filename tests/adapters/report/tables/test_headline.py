@@ -126,6 +126,17 @@ def test_modes_that_nothing_explains_are_named_where_nothing_is_missing(
     assert len(first) < 150
 
 
+def test_what_the_rest_looks_like_leads_where_no_effect_is_found(
+    discovery: dict[str, Any],
+) -> None:
+    judged = discovery["judgement"] | {"looks_like": "a structure that is bowed along y by 6 mm"}
+    discovery |= {"verdict": "undecided", "findings": [], "judgement": judged}
+    said = "It looks like a structure that is bowed along y by 6 mm, which no listed effect is."
+    assert story(answer_of(discovery))[1] == said
+    discovery |= {"verdict": "no_gap"}
+    assert said not in story(answer_of(discovery))
+
+
 def test_nothing_pairs(correlation: dict[str, Any]) -> None:
     correlation |= {"pairs": [], "unpaired_test": [1, 2, 3]}
     assert headline(answer_of(correlation)) == "None of the 3 test modes pairs with the model."
