@@ -144,8 +144,9 @@ class Discovery:
     modes held out agree that it foretells them better than these.
     By `mesh`, relative, the deck's mesh makes frequencies too low on average, which no parameter
     makes up for. `looks_like` names an error of the model without a place that would explain what
-    is left, where one does. `proposal` says that the effects explain much and foretell, but leave more than
-    right models do: the verdict is ``undecided``, and the deck is completed by them all the same.
+    is left, where one does. `proposal` says that the effects explain much and foretell, but leave
+    more than right models do: the verdict is ``undecided``, and the deck is completed by them all
+    the same.
     """
 
     verdict: str

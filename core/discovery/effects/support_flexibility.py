@@ -42,8 +42,8 @@ def _places(structure: Structure, scale: Scale) -> tuple[Candidates, ...]:
     Every fixed direction of a support alone, all its rotations or translations alike, those of
     every foot alike, and one direction over groups of supports that are neighbours. Along an edge
     of shells the groups are its stretches: they move along any axis, turn about the edge, or do
-    both, where a stretch on springs turns freely, about the edge or at all. The stiffness counts over all grids of a place,
-    for each of its directions.
+    both, where a stretch on springs turns freely, about the edge or at all. The stiffness counts
+    over all grids of a place, for each of its directions.
     """
     s = structure.supports
     if s is None or not len(s.grid):

@@ -30,6 +30,7 @@ from .model_selection import (
     Scored,
     adequacy_of,
     by_such_a_test,
+    clear_gain,
     kept,
     needed,
     ranked,
@@ -39,7 +40,6 @@ from .model_selection import (
     stands,
     told_beside,
     without_one,
-    worth_telling,
 )
 from .moves import Searcher
 from .search_numbers import SEARCH
@@ -110,7 +110,7 @@ class Completeness:
         model may leave as much: the odds are then those of a model that has no error. What the
         set-up may do has no such odds.
         """
-        least = max(needed(self.best), worth_telling(self.alone, self.best.diffuse.error))
+        least = max(needed(self.best), clear_gain(self.alone, self.best.diffuse.error))
         ahead = MODEL_ERROR.seen if self.explains and self.reach is None else SEARCH.suspect
         return bool(self.gain > least and self.ahead > ahead)
 
@@ -183,18 +183,20 @@ def completeness(
 
     The searcher that comes with it knows the places that were tried on the way.
 
-    The levels up to the accepted one compete, one suspect where the deck lacks something and
-    the known parameters alone leave more than right models do; of each the likeliest, the richer
-    one less a suspect among them, and, where the richer one does not earn its place over these, its
-    rivals and what another look finds. What is not clear is none in a deck that lacks nothing.
-    `deck` is how likely the test is by the deck as it is.
+    The levels up to the accepted one compete, one suspect where it is about as likely as the known
+    parameters alone, or where these leave more than right models do; of each the likeliest, the
+    richer one less a suspect among them, and, where the richer one does not earn its place over
+    these, its rivals and what another look finds. What is not clear is none in a deck that lacks
+    nothing. `deck` is how likely the test is by the deck as it is.
     """
     levels = [scored(searcher, found.levels[0])]
     alone = levels[0].judged
     if alone is None:
         raise CheckError("the deck with its known parameters fitted does not solve")
     enough = alone.diffuse.error <= MODEL_ERROR.usual or lacks_nothing(deck, alone)
-    most = min(max(accepted, 0 if enough else 1), len(found.levels) - 1)
+    near = levels[0].score - SEARCH.suspect
+    as_likely = any(scored(searcher, f).score > near for f in found.levels[1:2])
+    most = min(max(accepted, int(as_likely or not enough)), len(found.levels) - 1)
     fields: list[list[Scored]] = [[] for _ in range(most + 1)]
     poorer: list[Fit] = []
     for k in range(most, 0, -1):

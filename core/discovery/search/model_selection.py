@@ -157,14 +157,22 @@ def _leaves_more(judged: Judged, alone: Judged) -> bool:
     return bool(judged.diffuse.error > alone.diffuse.error and astray >= before)
 
 
-def worth_telling(alone: Judged, error: float) -> float:
-    """Return the gain over the known parameters `alone` below which nothing is told of.
+def clear_gain(alone: Judged, error: float) -> float:
+    """Return the gain over the known parameters `alone` below which nothing is clear.
 
-    Not in doubt either: an error of the model has a likeliest place too, and where more than a
-    small part of it is left, the `error`, what gains less a mode was never right.
+    An error of the model has a likeliest place too, and where more than a small part of it is
+    left, the `error`, what gains less a mode was never right.
     """
     small = error < SEARCH.small_part * alone.diffuse.error
     return 0.0 if small else SEARCH.each_mode * len(alone.diffuse.each)
+
+
+def worth_telling(alone: Judged, error: float) -> float:
+    """Return the gain below which nothing is told of, not in doubt either.
+
+    What nearly gains enough is in doubt: "nothing" and "clear" are never neighbours.
+    """
+    return max(clear_gain(alone, error) - SEARCH.suspect, 0.0)
 
 
 def earned(richer: Scored, poorer: Scored) -> bool:
