@@ -152,9 +152,14 @@ def kept(searcher: Searcher, levels: Sequence[Scored]) -> int:
 
 
 def _leaves_more(judged: Judged, alone: Judged) -> bool:
-    """Whether a hypothesis leaves more error, and no fewer modes that nothing explains."""
-    astray, before = (np.count_nonzero(j.diffuse.astray) for j in (judged, alone))
-    return bool(judged.diffuse.error > alone.diffuse.error and astray >= before)
+    """Whether a hypothesis leaves more error, and no fewer modes that nothing explains.
+
+    More by less than the noise of readings falls is not more: where hardly a mode pairs, shapes
+    that are none of the model's are noise, and once they pair they bear its error.
+    """
+    now, before = judged.diffuse, alone.diffuse
+    more = now.error * now.noise > before.error * before.noise and now.error > before.error
+    return bool(more and np.count_nonzero(now.astray) >= np.count_nonzero(before.astray))
 
 
 def clear_gain(alone: Judged, error: float) -> float:

@@ -312,18 +312,27 @@ def test_beside_what_leaves_no_more_than_right_models_an_effect_has_to_be_clear(
     assert earned(richer, poorer) == clear
 
 
-@pytest.mark.parametrize(("error", "lost", "told"), [(0.05, 2, 1), (0.06, 2, 0), (0.06, 1, 1)])
+@pytest.mark.parametrize(
+    ("error", "lost", "noise", "told"),
+    [
+        (0.05, 2, 0.02, 1),
+        (0.06, 2, 0.02, 0),
+        (0.06, 1, 0.02, 1),
+        pytest.param(0.06, 2, 0.01, 1, id="but shapes pair that were noise"),
+    ],
+)
 def test_what_leaves_more_error_and_explains_no_mode_more_is_not_told(
-    monkeypatch, error, lost, told
+    monkeypatch, error, lost, noise, told
 ):
     """Two masses in doubt left 5.7 % of the stiffness, the known parameters alone 5.2 %."""
 
-    def leaving(error, lost, score, *suspects):
-        left = Some(error=error, noise=0.0, each=np.zeros(10), astray=np.arange(10) < lost)
+    def leaving(error, lost, score, *suspects, noise=0.02):
+        left = Some(error=error, noise=noise, each=np.zeros(10), astray=np.arange(10) < lost)
         return Scored(Some(suspects=suspects), Some(diffuse=left), score)
 
     monkeypatch.setattr(model_selection, "told_beside", lambda *_: True)
-    assert kept(None, [leaving(0.055, 2, 0.0), leaving(error, lost, 90.0, "a mass")]) == told
+    alone = leaving(0.055, 2, 0.0)
+    assert kept(None, [alone, leaving(error, lost, 90.0, "a mass", noise=noise)]) == told
 
 
 def test_what_no_longer_earns_its_place_is_to_spare():
