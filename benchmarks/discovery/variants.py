@@ -1,7 +1,8 @@
 """``python -m benchmarks.discovery.variants CASE WAY``: the same case told otherwise.
 
-Grids renumbered, sensors and modes shuffled, axes turned, units changed, a breath of noise: what
-`discover` says must not change, nor with other threads (``OMP_NUM_THREADS``). Decks are those of
+Grids renumbered, sensors and modes shuffled, sensors relabelled, axes turned, units changed, a
+breath of noise: what `discover` says must not change, nor with other threads
+(``OMP_NUM_THREADS``). Decks are those of
 `deck` and of the data folder: small-field cards of one line each. A turned case has its axes
 exchanged in deck and test alike, so that springs along the basic axes stay what they are.
 """
@@ -14,7 +15,7 @@ import re
 import sys
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ from trueup.core.data.dofs import Dofs
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.measurement import Measurement
 
-from .mesh import Floats
+from .mesh import Floats, Ints
 
 Json = dict[str, Any]
 Card = list[str]
@@ -50,6 +51,7 @@ class Variant:
     test: Measurement
     unit: str = "mm"
     turn: Floats | None = None
+    labels: dict[int, int] = field(default_factory=dict)
 
     def back(self, finding: Json) -> Json:
         """Return side, kind, place [mm], sensors, size and interval [mm, t, N] of a finding."""
@@ -67,7 +69,7 @@ class Variant:
         return {
             "what": (finding["side"], finding["kind"]),
             "xyz": xyz.tolist(),
-            "sensors": sorted(where.get("sensors") or []),
+            "sensors": sorted(self.labels.get(n, n) for n in where.get("sensors") or []),
             "size": None if size is None else scale * float(size),
             "interval": None if interval is None else [scale * float(v) for v in interval],
         }
@@ -146,6 +148,22 @@ def shuffled(case: Path, folder: Path, test: Measurement, rng: np.random.Generat
     return Variant(_deck(case), replace(test, geometry=geometry, modes=other))
 
 
+def relabelled(case: Path, folder: Path, test: Measurement, rng: np.random.Generator) -> Variant:
+    """Exchange the numbers of the test's nodes among them."""
+    del folder
+    modes, ids = test.modes, np.sort(test.geometry.ids)
+    assert modes is not None
+    new = rng.permutation(ids)
+
+    def named(old: Ints) -> Ints:
+        return np.asarray(new[np.searchsorted(ids, old)])
+
+    dofs = replace(modes.dofs, node=named(modes.dofs.node))
+    geometry = replace(test.geometry, ids=named(test.geometry.ids), elements={}, element_ids={})
+    other = replace(test, geometry=geometry, modes=replace(modes, dofs=dofs))
+    return Variant(_deck(case), other, labels=dict(zip(new.tolist(), ids.tolist(), strict=True)))
+
+
 def turned(case: Path, folder: Path, test: Measurement, rng: np.random.Generator) -> Variant:
     """Exchange the axes of deck and test."""
     del rng
@@ -201,7 +219,7 @@ def as_it_is(case: Path, folder: Path, test: Measurement, rng: np.random.Generat
 
 
 WAYS: dict[str, Callable[[Path, Path, Measurement, np.random.Generator], Variant]] = {
-    f.__name__: f for f in (as_it_is, renumbered, shuffled, turned, in_metres, breathed)
+    f.__name__: f for f in (as_it_is, renumbered, shuffled, relabelled, turned, in_metres, breathed)
 }
 
 

@@ -51,7 +51,10 @@ SETTINGS = {"threads": dict.fromkeys(THREADS, "4"), "kernel": {"OPENBLAS_CORETYP
 EVERY = [way for way in WAYS if way != "as_it_is"] + list(SETTINGS)
 TOLD = [(name, way) for name in SMALL for way in EVERY]
 TOLD += [(name, way) for name in LARGER for way in ("renumbered", "kernel")]
-TOLD += [("panel_stiffness", way) for way in ("shuffled", "turned", "in_metres", "breathed")]
+TOLD += [
+    ("panel_stiffness", way)
+    for way in ("shuffled", "relabelled", "turned", "in_metres", "breathed")
+]
 TOLD += [(name, way) for name in LARGEST for way in ("renumbered", "breathed")]
 TOLD += [("9737_plate_point_mass", way) for way in ("shuffled", "turned")]
 

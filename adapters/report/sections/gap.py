@@ -27,7 +27,8 @@ def _tables(found: DiscoverTables) -> Sequence[Table]:
     if held.before is None:
         note = "No modes were held out from the search: the test has fewer than ten that count."
     if not found.adopted:
-        same = gap.before == gap.after and held.before == held.after
+        pairs = (gap.before, gap.after), (held.before, held.after)
+        same = all(_shown(old) == _shown(new) for old, new in pairs)
         note += f" {_LEFT}." if same else f" {_LEFT}; {_CORRECTED}."
     return [Table.of("The gap", columns, rows, f"{note} {_off(found)}".strip())]
 
@@ -53,9 +54,16 @@ def _share(percent: float) -> str:
 
 
 def _cells(gap: Gap) -> list[Cell | str]:
+    *figures, mac = _shown(gap)
+    return [*figures, Cell(mac, bar=gap.mean_mac)]
+
+
+def _shown(gap: Gap | None) -> list[str]:
+    """Return a gap as far as it is shown."""
+    if gap is None:
+        return []
     mean, worst = gap.mean_abs_deviation_percent, gap.worst_deviation_percent
-    mac = Cell(percent(gap.mean_mac, 1), bar=gap.mean_mac)
-    return [str(gap.pairs), fixed(mean, 2), fixed(worst, 2), mac]
+    return [str(gap.pairs), fixed(mean, 2), fixed(worst, 2), percent(gap.mean_mac, 1)]
 
 
 GAP = Section("The gap", "gap", DiscoverTables, _tables)

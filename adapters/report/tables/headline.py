@@ -82,19 +82,8 @@ def _update(answer: UpdateTables) -> list[str]:
 
 def _discover(answer: DiscoverTables) -> list[str]:
     verdict, found = answer.verdict, answer.findings
-    best = _found(found)
-    told = [_VERDICT_SENTENCES.get(verdict, f"{verdict}.")]
-    moved = _moved(answer)
-    if verdict == "no_gap" or (verdict == "parameters_only" and not moved):
-        told = [_nothing_missing(verdict, answer.gap.before)]
-    if verdict in ("no_gap", "parameters_only"):
-        told = [told[0][:-1] + _but_for(answer.judgement.unexplained) + "."]
-    if best and verdict == "undecided":
-        told.append(_sentence(f"the best explanation so far: {best}"))
-    elif best:
-        told = [_sentence(best)]
-    elif verdict == "undecided" and (look := answer.judgement.looks_like):
-        told.append(_sentence(f"It looks like {look}, which no listed effect is"))
+    best, moved = _found(found), _moved(answer)
+    told = _verdict(answer, best, bool(moved))
     if verdict in ("parameters_only", "test_fault"):
         told += moved
     if not answer.adopted and verdict == "undecided":
@@ -115,6 +104,22 @@ def _discover(answer: DiscoverTables) -> list[str]:
     if best and rivals:
         told.append(f"Next best: {rivals[0].where}; {rivals[0].odds}.")
     return told
+
+
+def _verdict(answer: DiscoverTables, best: str, moved: bool) -> list[str]:
+    """Say what the verdict is, and what was found, or what it looks like."""
+    verdict, told = answer.verdict, _VERDICT_SENTENCES.get(answer.verdict, f"{answer.verdict}.")
+    if verdict == "no_gap" or (verdict == "parameters_only" and not moved):
+        told = _nothing_missing(verdict, answer.gap.before)
+    if verdict in ("no_gap", "parameters_only"):
+        told = told[:-1] + _but_for(answer.judgement.unexplained) + "."
+    look = answer.judgement.looks_like
+    if best:
+        so_far = [told, _sentence(f"the best explanation so far: {best}")]
+        return so_far if verdict == "undecided" else [_sentence(best)]
+    if look and verdict == "undecided":
+        return [told, _sentence(f"it looks like {look}, which no listed effect is")]
+    return [told]
 
 
 def _by_mesh(mesh: float) -> list[str]:

@@ -131,13 +131,23 @@ def _stance(magnitude: dict[str, Any]) -> str:
 
 
 def spot_of(geometry: Geometry, c: Candidates, row: int) -> str:
-    """Say where a candidate is: supports that give together by their grids, else near which."""
+    """Say where a candidate is: what joins two places, and supports that give together, by grids.
+
+    Else near which grid.
+    """
+    if ends := c.where[row].get("ends"):
+        return f"between {' and '.join(_grids(end) for end in ends)}"
     grids, near = c.where[row].get("grids", ()), region(geometry, c.xyz[row])
     if not c.law.shared or len(grids) < 2:
         return near
     if len(grids) <= NARRATIVE.grids_named:
         return f"at grids {listed([str(g) for g in grids])} together"
     return f"over {len(grids)} grids together {near}"
+
+
+def _grids(ids: Sequence[int]) -> str:
+    one, *more = (str(g) for g in ids)
+    return f"grids {listed([one, *more])}" if more else f"grid {one}"
 
 
 def region(geometry: Geometry, xyz: Floats) -> str:

@@ -140,7 +140,7 @@ class Structure(Noun):
 
         So what is chosen of them hangs on where they are, not on how a deck numbers them.
         """
-        return np.lexsort(self.along_axes(xyz))
+        return np.asarray(np.lexsort(self.along_axes(xyz)))
 
     def along_axes(self, xyz: Floats) -> Floats:
         """Return where points (n, 3) are along the structure's own axes, the longest last, (3, n).

@@ -63,7 +63,9 @@ def _row(kinds, grids, components, free=None):
     raise AssertionError(f"no candidate {grids} {components} {free}")
 
 
-@pytest.mark.parametrize(("components", "free"), [([3], None), ([4], None), ([3], [4]), ([3], [4, 5, 6])])
+@pytest.mark.parametrize(
+    ("components", "free"), [([3], None), ([4], None), ([3], [4]), ([3], [4, 5, 6])]
+)
 def test_a_stretch_takes_from_the_stiffness_what_springs_there_would(structure, components, free):
     c, row = _row(_kinds(structure), [2, 3, 4], components, free)
     s, k = structure.supports, 50.0

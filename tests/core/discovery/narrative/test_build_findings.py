@@ -37,6 +37,15 @@ def test_supports_that_give_together_are_told_by_their_grids(grids, shared, said
     assert spot_of(Geometry(np.arange(1, 4), xyz), place, 0) == said
 
 
+def test_what_joins_two_places_is_told_by_both():
+    where = ({"grids": [1, 2, 3], "ends": [[1], [2, 3]], "components": [1]},)
+    place = SimpleNamespace(where=where, xyz=np.zeros((1, 3)), law=SimpleNamespace(shared=False))
+    assert (
+        spot_of(Geometry(np.arange(1, 4), np.eye(3)), place, 0)
+        == "between grid 1 and grids 2 and 3"
+    )
+
+
 @pytest.mark.parametrize(
     ("interval", "size", "within"),
     [
