@@ -79,7 +79,7 @@ def _magnitude(finding: Finding) -> str:
     told = {k: _value(v) for k, v in sizes.items()}
     if each is not None:
         told["mass"] = f"{general(kilograms, 3)} kg"
-    said = [f"{k.replace('_', ' ')} {v}" for k, v in told.items()]
+    said = [k.replace("_", " ") + ("" if sizes[k] is True else f" {v}") for k, v in told.items()]
     if said and finding.interval is not None:
         scale = each if each is not None and next(iter(told)) == "mass" else 1.0
         low, high = (scale * v for v in finding.interval)

@@ -126,8 +126,8 @@ def _stance(magnitude: dict[str, Any]) -> str:
     """Say how equipment stands."""
     radius = np.sqrt(magnitude["inertia"] / magnitude["mass"])
     off = np.linalg.norm(magnitude.get("offset", 0.0))
-    text = f"It resists being turned (radius of gyration about {radius:.2g})"
-    return text + (f", its centre about {off:.2g} from its foot" if off > 0.0 else "")
+    text = f"It resists being turned (radius of gyration about {radius:.2g} deck units)"
+    return text + (f", its centre about {off:.2g} deck units from its foot" if off > 0.0 else "")
 
 
 def spot_of(geometry: Geometry, c: Candidates, row: int) -> str:
@@ -142,7 +142,9 @@ def spot_of(geometry: Geometry, c: Candidates, row: int) -> str:
         return near
     if len(grids) <= NARRATIVE.grids_named:
         return f"at grids {listed([str(g) for g in grids])} together"
-    return f"over {len(grids)} grids together {near}"
+    own = geometry.xyz[np.isin(geometry.ids, grids)]
+    middle = own[np.argmin(np.linalg.norm(own - c.xyz[row], axis=1))]
+    return f"over {len(grids)} grids together {region(geometry, middle)}"
 
 
 def _grids(ids: Sequence[int]) -> str:

@@ -77,7 +77,7 @@ def test_a_mass_off_the_structure_is_told_with_its_offset(tmp_path, monkeypatch)
     sentence = sentence_of(c.kind, said, "there", (0.1, 0.3), [1], MassUnit())
     assert "It resists being turned (radius of gyration about 0.0" in sentence
     off = np.linalg.norm(c.bodies[found.row].offset)
-    assert sentence.endswith(f"its centre about {off:.2g} from its foot.")
+    assert sentence.endswith(f"its centre about {off:.2g} deck units from its foot.")
 
 
 def test_a_body_that_climbed_beside_something_else_climbs_on(tmp_path, monkeypatch):
