@@ -68,10 +68,10 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     """
     progress("checking the sensors against each other")
     bench = Bench(request.placed, request.structure.model)
-    test, places = bench.survey, request.structure.along_axes(request.placed.observation.xyz)
+    test = bench.survey
     out = (
         held_out(*DISCOVERY.modes_held, DISCOVERY.modes_enough, test.frequencies_hz),
-        held_out(*DISCOVERY.sensors_held, DISCOVERY.sensors_enough, test.component, *places),
+        held_out(*DISCOVERY.sensors_held, DISCOVERY.sensors_enough, test.moves),
     )
     progress("making the catalogue of effects")
     ground = ground_of(request, ~out[0])

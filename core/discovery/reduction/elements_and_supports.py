@@ -140,15 +140,8 @@ class Structure(Noun):
 
         So what is chosen of them hangs on where they are, not on how a deck numbers them.
         """
-        return np.asarray(np.lexsort(self.along_axes(xyz)))
-
-    def along_axes(self, xyz: Floats) -> Floats:
-        """Return where points (n, 3) are along the structure's own axes, the longest last, (3, n).
-
-        As far as places are told apart: keys to sort by (`numpy.lexsort`).
-        """
         unit = REDUCTION.as_far * self.model.geometry.size
-        return np.asarray(np.round(xyz @ self._axes.T / unit).T[::-1])
+        return np.asarray(np.lexsort(np.round(xyz @ self._axes.T / unit).T[::-1]))
 
     @cached_property
     def lumped_masses(self) -> tuple[Floats, ...]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Bools, Floats, Ints
+from ...arrays import Bools, Floats
 from ..effects.candidates import Candidates, Suspect, apart
 from ..effects.effect_numbers import EFFECTS
 from ..equipment.bodies import grown
@@ -371,12 +371,12 @@ def explained(searcher: Searcher, best: Fit, number: int) -> tuple[int, ...]:
     return tuple(int(j) for j in np.flatnonzero(clear))
 
 
-def held_out(start: int, every: int, enough: int, *keys: Floats | Ints) -> Bools:
+def held_out(start: int, every: int, enough: int, key: Floats) -> Bools:
     """Return a mask of what is kept out of the search: of `enough`, every so many from `start`.
 
-    In the order of `keys`, the last of which counts first (`numpy.lexsort`), not that of a file.
+    In the order of a `key` (n,) that the test itself gives, not of a file, numbers or axes.
     """
-    order = np.lexsort(keys)
+    order = np.argsort(key, kind="stable")
     mask = np.zeros(len(order), bool)
     mask[order[start::every]] = len(order) >= enough
     return mask

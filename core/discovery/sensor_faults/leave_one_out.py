@@ -43,6 +43,12 @@ class Survey:
     errors: Floats | None = None
 
     @property
+    def moves(self) -> Floats:
+        """Return how much each sensor reads in all modes alike, (n_sensor,)."""
+        rms = np.linalg.norm(self.shapes, axis=0)
+        return np.asarray(np.linalg.norm(self.shapes / np.where(rms > 0.0, rms, 1.0), axis=1))
+
+    @property
     def slots(self) -> Ints:
         """Rows of each node in the order of the nodes, -1 where there are fewer, (n_node, k)."""
         _, first, of = np.unique(self.node, return_index=True, return_inverse=True)
