@@ -54,10 +54,14 @@ class Variant:
     labels: dict[int, int] = field(default_factory=dict)
 
     def back(self, finding: Json) -> Json:
-        """Return side, kind, place [mm], sensors, size and interval [mm, t, N] of a finding."""
+        """Return side, kind, place [mm], sensors, size and interval [mm, t, N] of a finding.
+
+        Sensors stand for their places: of two that are exchanged either may be told first.
+        """
         where, magnitude = finding["where"], finding["magnitude"]
+        at = [] if where.get("sensors") else where.get("xyz") or []
         length = 1e3 if self.unit == "m" else 1.0
-        xyz = np.array(where.get("xyz") or np.zeros((0, 3)), dtype=float).reshape(-1, 3) * length
+        xyz = np.array(at, dtype=float).reshape(-1, 3) * length
         if self.turn is not None:
             xyz = xyz @ self.turn
         word = next((w for w in _BACK if w in magnitude), None)
