@@ -23,6 +23,15 @@ def test_sound_sensors_are_not_accused(seed):
     assert faults(read(vibrating(seed), radial(), seed=seed)) == ()
 
 
+def test_how_much_a_sensor_reads_hangs_on_neither_signs_nor_the_size_of_shapes():
+    test, _ = survey(read(vibrating(), radial()), radial())
+    mixed = np.random.default_rng(1).permutation(len(test.node))
+    sizes = np.linspace(-3.0, 5.0, test.shapes.shape[1])
+    other = replace(test, shapes=sizes * test.shapes[mixed])
+    assert len(np.unique(test.moves)) == len(test.node)
+    np.testing.assert_allclose(other.moves, test.moves[mixed], rtol=1e-12)
+
+
 def test_a_sensor_wired_backwards_is_named():
     y = read(vibrating(), radial())
     y[7] *= -1.0
