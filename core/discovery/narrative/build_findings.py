@@ -19,9 +19,9 @@ from ..search.completeness import Completeness
 from ..search.credible_places import Place, between
 from ..search.found import Found, noise_scale, objective_of
 from ..search.model_selection import (
-    contenders,
     explained,
     instead,
+    says_else,
     scored,
     times,
 )
@@ -150,8 +150,27 @@ class _Outcome:
 
     @cached_property
     def rivals(self) -> list[Fit]:
-        """Hypotheses that say something else."""
-        return contenders(self.searcher, self.found, self.accepted)
+        """Of what says something else the best of every combination of kinds, likeliest first."""
+        best = self.kinds(self.best)
+        seen: dict[tuple[str, ...], Fit] = {}
+        for f in sorted((f for level in self.found.rivals for f in level), key=objective_of):
+            if self.kinds(f) != best or says_else(self.searcher, self.best, f):
+                seen.setdefault(self.kinds(f), f)
+        return sorted(seen.values(), key=self.behind)
+
+    def named(self, f: Fit) -> list[tuple[Candidates, int]]:
+        """Return candidates and row of every place of a hypothesis, by the names of their kinds."""
+        every = (place for s in f.suspects for place in self.places(s))
+        return sorted(every, key=lambda place: place[0].kind.name)
+
+    def kinds(self, f: Fit) -> tuple[str, ...]:
+        """Return the kinds of a hypothesis, one for each place."""
+        return tuple(c.kind.name for c, _ in self.named(f))
+
+    def regions(self, f: Fit) -> tuple[str, ...]:
+        """Say where the effects of a hypothesis are, one for each of its `kinds`."""
+        geometry = self.request.structure.model.geometry
+        return tuple(spot_of(geometry, c, row) for c, row in self.named(f))
 
     def behind(self, f: Fit) -> float:
         """Return by how much a hypothesis is less likely than the best, ln, choices paid for."""
@@ -261,24 +280,12 @@ def _alternatives(o: _Outcome, most: float) -> tuple[Alternative, ...]:
     One of the kinds that were found counts where it says something else: another place. None is
     said to be more than `most` times less likely: as much as the confidence in the best leaves.
     """
-
-    def named(f: Fit) -> list[tuple[Candidates, int]]:
-        every = (place for s in f.suspects for place in o.places(s))
-        return sorted(every, key=lambda place: place[0].kind.name)
-
-    def kinds_of(f: Fit) -> tuple[str, ...]:
-        return tuple(c.kind.name for c, _ in named(f))
-
-    seen: dict[tuple[str, ...], Fit] = {}
-    for f in sorted((f for level in o.found.rivals for f in level), key=objective_of):
-        if kinds_of(f) != kinds_of(o.best) or any(f is g for g in o.rivals):
-            seen.setdefault(kinds_of(f), f)
     out = []
-    for kinds, f in sorted(seen.items(), key=lambda item: o.behind(item[1])):
-        xyz = [c.xyz[row] for c, row in named(f)]
-        regions = tuple(spot_of(o.request.structure.model.geometry, c, row) for c, row in named(f))
-        said = effects_said(kinds, regions)
-        out.append(alternative(kinds, xyz, o.times_less_likely(f), said, regions, most=most))
+    for f in o.rivals:
+        xyz = [c.xyz[row] for c, row in o.named(f)]
+        regions = o.regions(f)
+        said = effects_said(o.kinds(f), regions)
+        out.append(alternative(o.kinds(f), xyz, o.times_less_likely(f), said, regions, most=most))
     if o.accepted:
         ratio = o.times_less_likely(o.found.levels[0])
         out.append(alternative((), (), ratio, "the known parameters alone", most=most))
@@ -288,7 +295,8 @@ def _alternatives(o: _Outcome, most: float) -> tuple[Alternative, ...]:
 def _would_decide(o: _Outcome, held: Bools) -> tuple[str, ...]:
     """Say which sensors and modes tell the best hypotheses apart."""
     simpler = o.found.levels[: o.accepted][-1:]
-    rivals = sorted((*o.rivals, *simpler), key=o.behind)
+    other = [f for f in o.rivals if says_else(o.searcher, o.best, f)]
+    rivals = sorted((*other, *simpler), key=o.behind)
     near = [f for f in rivals if o.behind(f) < NARRATIVE.rival] or rivals[:1]
     told_apart = tuple((_in_words(o, f), f) for f in near[: NARRATIVE.rivals])
     p, model = o.searcher.problem, o.request.structure.model
@@ -300,8 +308,4 @@ def _would_decide(o: _Outcome, held: Bools) -> tuple[str, ...]:
 
 
 def _in_words(o: _Outcome, f: Fit) -> str:
-    if not f.suspects:
-        return "the known parameters alone"
-    last = f.suspects[-1]
-    said = effects_said([o.of(last).kind.name], [o.region(last)])
-    return said if len(f.suspects) < 2 else f"an explanation with {said}"
+    return effects_said(o.kinds(f), o.regions(f)) or "the known parameters alone"

@@ -75,12 +75,6 @@ def stands(alone: Judged, best: Judged) -> bool:
     return bool(adequacy_of(best) > MODEL_ERROR.claimed and by_such_a_test(best) > least)
 
 
-def contenders(searcher: Searcher, found: Found, accepted: int) -> list[Fit]:
-    """Return the rivals that lack an effect of the accepted hypothesis: that say something else."""
-    best = found.levels[accepted]
-    return [f for level in found.rivals for f in level if says_else(searcher, best, f)]
-
-
 def says_else(searcher: Searcher, best: Fit, f: Fit) -> bool:
     """Whether a hypothesis lacks an effect of the best one: another place, another nature."""
     return bool(_unmatched(searcher, best, f)[0])
