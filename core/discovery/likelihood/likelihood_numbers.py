@@ -29,7 +29,6 @@ class LikelihoodNumbers:
     degenerate: float = number(2e-3, "of λ", "gap below which modes do not turn into each other in a derivative")
     apart_least: float = number(1e-12, "1 - MAC", "least that is divided by", ROUNDING)
     significant: float = number(3.0, "standard deviations", "by which a known parameter moved, for the test to say that it is off")
-    beyond: float = number(1.6, "standard deviations", "by which a known parameter is off, for one that the fit states", "68 % of 369 properties in 250 unseen cases, all hidden on the list")
     interval: float = number(1.96, "standard deviations", "half of a 95 % interval", "normal distribution")
     law_top: float = number(2.0, "of the test's highest λ", "below which springs that stand for a rigid link do not matter")
 

@@ -14,7 +14,6 @@ from ..effects.candidates import Suspect
 from ..effects.effect_numbers import EFFECTS
 from ..likelihood.elimination import InDeck, in_deck
 from ..likelihood.hypothesis import Fit, Problem
-from ..likelihood.likelihood_numbers import LIKELIHOOD
 from ..likelihood.map_fit import evaluate, fit
 from ..likelihood.mode_likelihood import Evidence, targets
 from ..model_error.beside_fields import with_drift, with_known
@@ -182,12 +181,9 @@ def _beside_mesh(problem: Problem, state: Fit) -> Problem:
 
 
 def _in_deck(own: Problem, found: Fit) -> tuple[InDeck, Fit]:
-    """Return the known parameters of a fit for a deck, its effects held as they are; the fit.
-
-    A mesh errs alike in modes alike, which no fit knows of that takes them for independent.
-    """
+    """Return the known parameters of a fit for a deck, its effects held as they are; the fit."""
     free = fit(own, found.nuisance, found.suspects, everything(own), SEARCH.steps_polished)
-    scale = noise_scale(own, free) * LIKELIHOOD.beyond**2
+    scale = noise_scale(own, free)
     n = len(found.log_p)
     known = in_deck(free.log_p, free.information, scale, own.prior.spread[:n])
     held = tuple(
