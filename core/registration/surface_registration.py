@@ -111,7 +111,9 @@ def _starts(cloud: Cloud, points: Floats, rng: np.random.Generator) -> tuple[Flo
 
 
 def principal_axes(points: Floats) -> Floats:
-    """Right-handed principal axes of a cloud of points as columns, (3, 3)."""
+    """Right-handed principal axes of a cloud of points as columns, (3, 3); any of a single one."""
+    if len(points) < 2:
+        return np.eye(3)
     axes = np.linalg.eigh(np.cov(points, rowvar=False))[1]
     axes[:, 2] *= np.linalg.det(axes)
     return np.asarray(axes)

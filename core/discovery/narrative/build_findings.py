@@ -68,6 +68,8 @@ def build_discovery(
     clear = whole.clear and bool(findings) and not (decide or held)
     clear = clear and not any(map(_says_nothing, findings))
     clear = clear and not (_gains_little(whole) and any(map(_hardly_told, findings)))
+    few = _few_modes(whole, len(findings))
+    clear, decide = clear and not few, (*few, *decide)
     proposal = clear and not whole.true
     if clear and whole.true:
         word = "effect"
@@ -131,6 +133,17 @@ def _hardly_told(f: Finding) -> bool:
 def _gains_little(whole: Completeness) -> bool:
     """Whether what was found gains little a mode."""
     return whole.gain < NARRATIVE.little * len(whole.best.diffuse.each)
+
+
+def _few_modes(whole: Completeness, places: int) -> tuple[str, ...]:
+    """Say that effects at so many places are more than the modes that they explain can tell."""
+    modes = int(np.count_nonzero(~whole.best.diffuse.astray))
+    if places * NARRATIVE.modes_each <= modes:
+        return ()
+    return (
+        f"further modes: each effect has a place and a size, for which "
+        f"{NARRATIVE.modes_each} modes are asked; there are {modes} for {places}",
+    )
 
 
 @dataclass(frozen=True, eq=False)

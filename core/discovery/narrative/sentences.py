@@ -38,16 +38,16 @@ def effects_said(kinds: Sequence[str], regions: Sequence[str]) -> str:
     """Say what is where: ``a spring to ground near grid 7 (x = 1)``.
 
     Effects of one kind together, and several places without their coordinates: ``two attached
-    masses, near grid 8 and near grid 9``.
+    masses, near grid 8 and near grid 9``, a place that several have once.
     """
     if len(regions) > 1:
         regions = [r.split(" (")[0] for r in regions]
     at = {kind: [r for k, r in zip(kinds, regions, strict=True) if k == kind] for kind in kinds}
     comma = "," if len(kinds) > len(at) else ""
-    said = [
-        f"{_kind(kind, len(own))}{',' if len(own) > 1 else ''} {listed(own)}".rstrip()
-        for kind, own in at.items()
-    ]
+    said = []
+    for kind, own in at.items():
+        where = listed(list(dict.fromkeys(own)))
+        said.append(f"{_kind(kind, len(own))}{',' if len(own) > 1 else ''} {where}".rstrip())
     return f"{comma} and ".join(said)
 
 

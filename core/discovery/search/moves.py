@@ -203,6 +203,7 @@ class Searcher:
     ) -> Fit:
         """Fit suspects and parameters on the basis of a state, then weigh on the full basis."""
         small, _ = self.local(state)
+        first = state.nuisance, suspects
         if soften:
             near = fit(softened(small), state.nuisance, suspects, self.active, iterations)
             suspects, state = near.suspects, near
@@ -211,7 +212,7 @@ class Searcher:
         try:
             return fit(whole, quick.nuisance, quick.suspects, self.active, steps)
         except np.linalg.LinAlgError:  # shells made thinner leave no mass on the whole basis
-            return fit(whole, state.nuisance, suspects, self.active, steps)
+            return fit(whole, *first, self.active, steps)
 
     def refined(self, state: Fit) -> Fit:
         """Move every suspect to better neighbours until none is better."""

@@ -49,6 +49,14 @@ def test_frame_that_agrees_is_kept_although_a_few_nodes_hang_in_the_air():
     assert is_identity(align(geo, measured(xyz, np.eye(3), np.zeros(3))))
 
 
+@pytest.mark.parametrize("moved", [0.0, 1e4])
+def test_a_single_sensor_is_laid_on_the_model_in_any_frame(moved):
+    geo = bracket()
+    point = points_on(geo, 40)[:1]
+    found = align(geo, measured(point + moved, np.eye(3), np.zeros(3)))
+    assert found.rms < 1.5
+
+
 def test_a_small_shift_is_left_but_said():
     geo, shift = bracket(), np.array([9.0, 4.0, 0.0])
     test = measured(points_on(geo, 60) + shift, np.eye(3), np.zeros(3), noise=0.2)

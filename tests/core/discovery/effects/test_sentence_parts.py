@@ -111,6 +111,11 @@ def test_a_mass_is_said_in_kilograms_where_they_are_known():
             ("near grid 7 (x = 1)", "near grid 8 (x = 2)", "near grid 9 (x = 3)"),
             "a distributed mass near grid 7, and two attached masses, near grid 8 and near grid 9",
         ),
+        (
+            ("point_mass",) * 2,
+            ("near grid 36", "near grid 36"),
+            "two attached masses, near grid 36",
+        ),
         (("ground_spring",) * 3, ("a", "b", "c"), "three springs to ground, a, b and c"),
         (("flux_leak",), ("near grid 7",), "1 flux leak near grid 7"),
     ],

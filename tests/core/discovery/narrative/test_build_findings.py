@@ -9,6 +9,7 @@ from trueup.core.data.geometry import Geometry
 from trueup.core.data.mass_unit import MassUnit
 from trueup.core.discovery.effects import KINDS
 from trueup.core.discovery.narrative.build_findings import (
+    _few_modes,
     _gains_little,
     _hardly_told,
     _share,
@@ -84,3 +85,14 @@ def test_less_than_two_and_a_half_nats_a_mode_are_little(gain, little):
         gain=gain, best=SimpleNamespace(diffuse=SimpleNamespace(each=np.zeros(10)))
     )
     assert _gains_little(whole) is little
+
+
+@pytest.mark.parametrize(
+    ("places", "modes", "astray", "few"),
+    [(2, 6, 0, False), (3, 6, 0, True), (3, 9, 0, False), (3, 9, 1, True), (0, 0, 0, False)],
+)
+def test_each_effect_of_a_claim_takes_three_modes_that_are_explained(places, modes, astray, few):
+    diffuse = SimpleNamespace(astray=np.arange(modes) < astray)
+    said = _few_modes(SimpleNamespace(best=SimpleNamespace(diffuse=diffuse)), places)
+    assert bool(said) is few
+    assert not few or f"there are {modes - astray} for {places}" in said[0]

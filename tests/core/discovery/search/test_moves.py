@@ -37,6 +37,25 @@ def test_on_its_own_lowest_modes_a_hypothesis_is_what_it_was(held, monkeypatch):
     assert here.objective == pytest.approx(state.objective, rel=1e-6)
 
 
+def test_a_fit_whose_softened_one_leaves_no_mass_starts_from_where_it_came(monkeypatch):
+    s = searcher(hidden(masses=[(9, 2.0)]))
+    state, suspects = s.null(), (Suspect(MASS, 9, (0.0,)),)
+    plain = fit(s.problem, state.nuisance, suspects, s.active, SEARCH.steps_whole)
+    tried = []
+
+    def thin(problem, start, *rest):
+        if problem is s.problem:
+            tried.append(start)
+            if not np.array_equal(start, state.nuisance):
+                raise np.linalg.LinAlgError
+        return fit(problem, start, *rest)
+
+    monkeypatch.setattr(moves, "fit", thin)
+    found = s.fitted(state, suspects, SEARCH.steps_new, soften=True)
+    assert len(tried) == 2
+    assert found.objective == plain.objective
+
+
 def test_two_masses_side_by_side_are_one_between_them_on_points_and_patches_alike():
     s = searcher(hidden(masses=[(9, 2.0)]))
     p = s.problem
