@@ -77,7 +77,7 @@ def borne_out(
         if moved and more <= 0 and not _nearer(before, after):
             found = _or_a_mesh(found)
         found = _seen_in_pairs(found, len(after.pairs), tests, readings, helps)
-        return _as_far_off_as_a_mesh(found, before)
+        return _near_in_pairs(_as_far_off_as_a_mesh(found, before), after)
     return found if helps or damped or not found.completes else _withdrawn(found)
 
 
@@ -157,6 +157,21 @@ def _as_far_off_as_a_mesh(found: Discovery, before: Correlation) -> Discovery:
     if found.verdict != "no_gap" or not off or np.mean(off) <= SCREENING.repeats:
         return found
     return _or_a_mesh(replace(found, verdict="parameters_only"))
+
+
+def _near_in_pairs(found: Discovery, after: Correlation) -> Discovery:
+    """Return what was found, in doubt where a mode that pairs is off by more than any mesh is.
+
+    So few sensors tell shapes apart no more, or something is missing that the search has not.
+    """
+    off = max((abs(p.deviation_percent) / 100.0 for p in after.pairs), default=0.0)
+    if found.verdict not in ("no_gap", "parameters_only") or off <= SCREENING.off:
+        return found
+    why = (
+        f"more sensors: of the modes that pair one is {100.0 * off:.0f} % off in frequency, more "
+        "than meshes are and known parameters explain; so few may not tell which mode it is"
+    )
+    return _in_doubt(found, why, proposal=False)
 
 
 def _or_a_mesh(found: Discovery) -> Discovery:

@@ -19,6 +19,7 @@ class ScreeningNumbers:
     moved: float = number(2e-3, "of a property", "by which a known property has moved if it is to change in the deck")
     pairs: float = number(0.5, "of the test's modes", "that pair at least where nothing is said to be missing")
     repeats: float = number(0.005, "of f", "mean deviation from which on there is a gap", "what a test repeats by when a structure is mounted anew")
+    off: float = number(0.15, "of f", "that a mode which pairs is off at most where nothing is said to be missing", "12 % at most in 158 such answers in unseen cases")
     effect: int = number(4, "unknowns", "of one effect: where it is and how large", "three coordinates and a magnitude")
     alike: float = number(0.9, "of 1 - MAC", "that is left where shapes come clearly nearer")
     as_a_whole: float = number(0.8, "of a shape's square", "that rigid motions take up if it moves as a whole")
