@@ -167,8 +167,12 @@ def normal_space(r: Floats, direction: Floats, kind: Ints, slack: float) -> Floa
     return np.asarray(np.where(face, on_face, np.eye(3) - np.where(open_line, outer, 0.0)))
 
 
-def robust_weights(distance: Floats, floor: float) -> Floats:
-    """Geman-McClure weights of distances (k, n), scaled by some times each row's median."""
+def robust_weights(distance: Floats, floor: Floats | float) -> Floats:
+    """Geman-McClure weights of distances (k, n), scaled by some times each row's median.
+
+    `floor` is the least scale. Where most points lie on one plane the median is rounding: the
+    few that fix the slide along it must not be outliers for that.
+    """
     median = np.median(distance, axis=1, keepdims=True)
     scale = np.maximum(ALIGN.outlier * median, floor)
     return np.asarray((1.0 / (1.0 + (distance / scale) ** 2)) ** 2)
@@ -213,6 +217,6 @@ def polish(
         r = x - at.foot.reshape(*shape, 3)[gain]
         normal, kind = at.normal.reshape(*shape, 3)[gain], at.kind.reshape(shape)[gain]
         W = normal_space(r, normal, kind, ALIGN.foot * surface.size)
-        weight = robust_weights(distance, ALIGN.near * surface.size)
+        weight = robust_weights(distance, np.maximum(rms[gain], ALIGN.near * surface.size)[:, None])
         R[active], t[active] = _moved(R[active], t[active], x, r, W * weight[..., None, None])
     return best

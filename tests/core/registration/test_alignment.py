@@ -92,6 +92,22 @@ def test_exact_positions_are_recovered_to_rounding():
     assert error_of(align(geo, test), test, xyz) < 1e-3
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_plane_is_slid_where_few_points_on_a_fin_say(seed):
+    """All but two points of the test lie on the wing, exactly; only those two fix it spanwise."""
+    x, y = np.meshgrid(np.linspace(0, 400, 9), np.linspace(-700, 900, 13), indexing="ij")
+    wing = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3)
+    fin = np.array([[0, 0, 0], [300, 0, 0], [300, 0, 350], [120, 0, 350.0]])
+    rows = (np.arange(8)[:, None] * 13 + np.arange(12)).ravel()
+    quads = np.vstack([rows[:, None] + [0, 13, 14, 1], [117, 118, 119, 120]])
+    geo = geometry(np.vstack([wing, fin]), quad=quads)
+    rng = np.random.default_rng(seed)
+    inner = np.column_stack([rng.uniform(20, 380, 40), rng.uniform(-650, 850, 40), np.zeros(40)])
+    xyz = np.vstack([inner, [[200, 0, 300.0], [250, 0, 180.0]], wing[[0, 12, 104, 116]]])
+    test = measured(xyz, Rotation.random(random_state=seed).as_matrix(), noise=0.0)
+    assert error_of(align(geo, test), test, xyz) < 1e-3
+
+
 def test_nodes_that_hang_in_the_air_do_not_pull_the_fit():
     geo = bracket()
     xyz = points_on(geo, 60)
