@@ -29,8 +29,9 @@ def test_a_mode_that_is_listed_twice_is_said(deck_and_test):
     assert any("one mode listed twice" in w for w in told.warnings)
 
 
-def test_shapes_that_no_mode_has_are_no_sign_that_nothing_is_missing(deck_and_test):
+def test_shapes_that_no_mode_has_say_nothing_of_model_or_sensors(deck_and_test):
     rng = np.random.default_rng(2)
     told = said_of(*deck_and_test, range(6), lambda s: rng.standard_normal(s.shape))
     assert told.verdict == "undecided"
     assert any("more modes pair" in w for w in told.would_decide)
+    assert not told.findings

@@ -59,7 +59,7 @@ def build_discovery(
     findings = [_finding(outcome, k, p, own[k]) for k, p in suspects if not outcome.held(k)]
     nodes = request.placed.observation.sensors.node
     adequate = whole.explains
-    tested = tested if adequate and (whole.clear or not suspects) else tested.beyond_doubt
+    tested = _told_of_sensors(whole, tested, bool(suspects))
     accused = accusations(request.placed.observation, tested)
     word = "no_gap"
     spots = [np.asarray(f.where.xyz) for f in findings]
@@ -137,13 +137,28 @@ def _gains_little(whole: Completeness) -> bool:
 
 def _few_modes(whole: Completeness, places: int) -> tuple[str, ...]:
     """Say that effects at so many places are more than the modes that they explain can tell."""
-    modes = int(np.count_nonzero(~whole.best.diffuse.astray))
+    modes = _explained(whole)
     if places * NARRATIVE.modes_each <= modes:
         return ()
     return (
         f"further modes: each effect has a place and a size, for which "
         f"{NARRATIVE.modes_each} modes are asked; there are {modes} for {places}",
     )
+
+
+def _told_of_sensors(whole: Completeness, tested: Verdicts, suspects: bool) -> Verdicts:
+    """Return what is told of the sensors: less where the model is in doubt.
+
+    Shapes that no model explains accuse nobody.
+    """
+    if _explained(whole) < NARRATIVE.modes_each:
+        return replace(tested, faults=())
+    return tested if whole.explains and (whole.clear or not suspects) else tested.beyond_doubt
+
+
+def _explained(whole: Completeness) -> int:
+    """Return the number of modes searched that the best of what was found explains."""
+    return int(np.count_nonzero(~whole.best.diffuse.astray))
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,7 @@ class NarrativeNumbers:
     like_model: float = number(0.8, "-", "share of sensors said to be turned or to read too much or little that are", CALIBRATED)
     held: float = number(10.0, "of the structure's mass", "above which a mass at one place is none: the test is held there", "the place moves less than a tenth of what it would")
     hardly: float = number(20.0, "-", "quotient of the ends of an interval from which on a magnitude is hardly known")
-    modes_each: int = number(3, "modes", "for each effect of a claim, at least", "an effect has a place and a size; none of 256 claims in unseen cases had fewer")
+    modes_each: int = number(3, "modes", "for each effect of a claim, and where sensors are accused, at least", "an effect has a place and a size; none of 256 claims in unseen cases had fewer")
     alternatives: int = number(5, "alternatives", "that are told, at most", READER)
     rivals: int = number(3, "hypotheses", "that further data should tell from the best, at most", READER)
     rival: float = number(7.0, "ln L", "how far behind the best they are, at most", "a thousand times less likely")

@@ -8,13 +8,16 @@ import pytest
 from trueup.core.data.geometry import Geometry
 from trueup.core.data.mass_unit import MassUnit
 from trueup.core.discovery.effects import KINDS
+from trueup.core.discovery.faults import POLARITY, Fault
 from trueup.core.discovery.narrative.build_findings import (
     _few_modes,
     _gains_little,
     _hardly_told,
     _share,
+    _told_of_sensors,
 )
 from trueup.core.discovery.narrative.sentences import sentence_of, spot_of
+from trueup.core.discovery.sensor_faults.diagnosis import Verdicts
 
 
 @pytest.mark.parametrize(("gain", "said"), [(20.0, 0.6), (60.0, 0.9)])
@@ -96,3 +99,12 @@ def test_each_effect_of_a_claim_takes_three_modes_that_are_explained(places, mod
     said = _few_modes(SimpleNamespace(best=SimpleNamespace(diffuse=diffuse)), places)
     assert bool(said) is few
     assert not few or f"there are {modes - astray} for {places}" in said[0]
+
+
+@pytest.mark.parametrize(("explained", "accused"), [(3, 1), (2, 0), (0, 0)])
+def test_shapes_that_no_model_explains_accuse_no_sensor(explained, accused):
+    reversed_one = Fault(POLARITY.name, (0,), -np.eye(1), -1.0, 0.0, (), 0.97)
+    tested = Verdicts((reversed_one,), np.zeros(1, bool), 0.5)
+    diffuse = SimpleNamespace(astray=np.arange(12) >= explained)
+    whole = SimpleNamespace(best=SimpleNamespace(diffuse=diffuse), explains=True, clear=True)
+    assert len(_told_of_sensors(whole, tested, False).faults) == accused
