@@ -63,6 +63,7 @@ class SearchNumbers:
 
     late_tried: int = number(6, "places", "of an absorber or a link that are tried beside what was found")
     late_moved: int = number(4, "of these", "that are moved to better neighbours", "time")
+    late_worth: float = number(0.5, "of what a simpler one gains there", "that one of them gains before it is moved, at least", "time")
     margin: float = number(6.0, LN, "what a suspect must gain besides the log of the number of its choices")
     suspect: float = number(5.0, "ln L", "what a suspect must gain besides the log of its choices for it to be spoken of")
     claimed: float = number(5.0, "ln L a test mode", "gain over the known parameters and smooth fields, and over other effects, from which on an effect is clear whatever is left", "fresh cases with causes that no list has")

@@ -63,9 +63,12 @@ def searched(
     progress("looking for absorbers and for springs between two places")
     alone = _with(searcher, kinds)
     first = best - 1 if stands else 0
-    beside = [f for level in found.levels[first : best + 1] for f in _beside(alone, level)]
+    simpler = (*found.levels[1:], None)
+    beside = [
+        f for k in range(first, best + 1) for f in _beside(alone, found.levels[k], simpler[k])
+    ]
     if not best:
-        beside += [f for level in found.levels[1:2] for f in _beside(alone, level, 1)]
+        beside += [f for level in found.levels[1:2] for f in _beside(alone, level, few=1)]
     best_so_far = scored(searcher, found.levels[best])
     top = next(iter(ranked(searcher, beside)), best_so_far)
     if top.score <= best_so_far.score:
@@ -133,17 +136,24 @@ def _with(searcher: Searcher, kinds: list[bool]) -> Searcher:
     return replace(searcher, coarse=coarse)
 
 
-def _beside(searcher: Searcher, state: Fit, few: int = SEARCH.late_moved) -> list[Fit]:
+def _beside(
+    searcher: Searcher, state: Fit, simpler: Fit | None = None, few: int = SEARCH.late_moved
+) -> list[Fit]:
     """Return the best fit of a state with one more suspect of each kind.
 
     Of the best `few`, each moved to better neighbours: the first scan sees but few of the links,
     and one that is right but for its ends gains no more there than others. None of a kind that
-    gains next to nothing.
+    gains next to nothing, none moved that gains far less than a `simpler` one beside the state.
     """
+    worth = SEARCH.late_worth * (state.objective - simpler.objective if simpler else 0.0)
     fits: dict[int, list[Fit]] = {}
     for _, branch in searcher.branches(state, SEARCH.late_tried):
         new = searcher.fitted(state, (*state.suspects, branch), SEARCH.steps_new, soften=True)
         if not hopeless(searcher, state, new):
             fits.setdefault(branch.kind, []).append(new)
-    first = (sorted(own, key=objective_of)[:few] for own in fits.values())
-    return [min(map(searcher.refined, own), key=objective_of) for own in first]
+    first = [sorted(own, key=objective_of)[:few] for own in fits.values()]
+    moved = (
+        [searcher.refined(f) if state.objective - f.objective > worth else f for f in own]
+        for own in first
+    )
+    return [min(own, key=objective_of) for own in moved]
