@@ -21,6 +21,7 @@ from .findings import Discovery
 from .likelihood.frf_evidence import hearing, with_responses
 from .likelihood.hypothesis import Fit, Problem
 from .likelihood.map_fit import evaluate
+from .likelihood.repeated_modes import in_pairs
 from .likelihood.request import Request as Request
 from .model_error.diffuse_fit import Judged
 from .model_error.size_posterior import centred
@@ -312,5 +313,9 @@ def _searcher(trial: _Trial) -> Searcher:
     )
     both, columns = zip(made, factors, strict=True), small.columns
     coarse = tuple(first_places(c, f, columns, size) for c, f in both)
-    beside = tuple(neighbourhoods(c, rows, size) for c, rows in zip(made, coarse, strict=True))
+    paired = in_pairs(null.eigenvalues[null.match.min() : null.match.max() + 1])
+    beside = tuple(
+        neighbourhoods(c, rows, size) if paired or c.tunings == 1 else None
+        for c, rows in zip(made, coarse, strict=True)
+    )
     return Searcher(small, coarse, null.nuisance, size, trial.judged, beside)

@@ -13,6 +13,7 @@ class LikelihoodNumbers:
     robust: float = number(40.0, "2 ln L", "misfit of one mode beyond which more of it counts less and less")
     mixing: float = number(0.02, "of λ", "changes of K that no model has right: modes that are no further apart turn freely, see `mixing`")
     soft: float = number(3.0, "of the noise", "where wide valleys are wanted")
+    paired: float = number(0.5, "of the modes", "that have another so near where modes come in pairs", "0.67 to 0.9 of ducts and wheels, at most 0.2 of others")
     soft_mixing: float = number(5.0, "of `mixing`", "where the known parameters have yet to follow")
     unseen: float = number(1e-10, "of the largest squared length", "at the sensors, of a mode that they do not see", ROUNDING)
     pictured: int = number(800, "lines", "of responses that are kept for a picture, besides those of the modes", "what a screen shows")

@@ -41,6 +41,15 @@ def _apart(values: Floats) -> Bools:
     return np.asarray(np.diff(values) > LIKELIHOOD.repeated * np.abs(values[1:]))
 
 
+def in_pairs(values: Floats) -> bool:
+    """Whether most of ascending eigenvalues (n,) have another so near that the two turn freely.
+
+    As those of round structures do.
+    """
+    near = np.diff(values) < LIKELIHOOD.mixing * values[1:]
+    return bool(np.mean(np.append(near, False) | np.append(False, near)) > LIKELIHOOD.paired)
+
+
 def none_cut(values: Floats, number: int) -> int:
     """Return so many of eigenvalues (n,), or as many more as are repeated ones of the last."""
     apart = _apart(values)

@@ -50,10 +50,10 @@ class Neighbourhoods:
 def neighbourhoods(c: Candidates, first: Ints, size: float) -> Neighbourhoods | None:
     """Return the grids around the places of a first scan, None where it sees them all.
 
-    Of masses and springs, which split modes of one frequency: where they do not lie between the
-    grids of such a scan they turn them the wrong way, and the right one does not show.
+    Of what sits at points, which splits modes of one frequency: where it does not lie between the
+    grids of such a scan it turns them the wrong way, and the right one does not show.
     """
-    if not c.kind.across or not c.rows_each or c.tunings > 1 or not len(first):
+    if not c.kind.across or not c.rows_each or not len(first):
         return None
     along = np.array([w["components"][0] if c.kind.directed else 0 for w in c.where])
     grids, of = np.array([len(w["grids"]) == 1 for w in c.where]), np.full(len(c), -1)

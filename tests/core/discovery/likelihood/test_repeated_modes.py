@@ -12,7 +12,7 @@ from trueup.core.data.parametric_model import Term
 from trueup.core.discovery.likelihood.likelihood_numbers import LIKELIHOOD
 from trueup.core.discovery.likelihood.map_fit import fit, solve
 from trueup.core.discovery.likelihood.mode_likelihood import Evidence
-from trueup.core.discovery.likelihood.repeated_modes import none_cut, turned_to_test
+from trueup.core.discovery.likelihood.repeated_modes import in_pairs, none_cut, turned_to_test
 from trueup.core.discovery.model_error.diffuse_fit import judged
 from trueup.core.reduction.reduced_sum import ReducedSum
 
@@ -87,3 +87,15 @@ def test_vectors_are_those_of_the_test():
     assert out[:, [0, 3]] == pytest.approx(V[:, [0, 3]])
     apart = values + np.array([0.0, 0.0, 10.0, 10.0]) * LIKELIHOOD.repeated
     assert turned_to_test(V, apart, cross, np.array([2, 3])) is V
+
+
+@pytest.mark.parametrize(
+    ("hz", "paired"),
+    [
+        ([76.0, 76.3, 104.0, 194.0, 194.0, 211.0, 212.0], True),
+        ([76.0, 84.0, 104.0, 194.0, 220.0, 221.0], False),
+        ([76.0], False),
+    ],
+)
+def test_modes_of_round_structures_come_in_pairs(hz, paired):
+    assert in_pairs(np.square(hz)) is paired

@@ -114,6 +114,21 @@ def test_a_mass_between_the_places_of_a_first_scan_shows_where_it_turns_modes_ri
     assert left < 0.2 * here.objective
 
 
+@pytest.mark.parametrize("bead", [9, 10, 11])
+def test_so_does_an_absorber(hoop, bead):
+    s = searcher(hidden(absorbers=[(bead, 2.0, 3.2)]))
+    _, here = begun(s)
+    first, c = np.arange(0, N, 4), s.problem.catalogue[2]
+    around = neighbourhoods(replace(c, kind=replace(c.kind, across=12.0)), first, 1.0)
+    among = (*(rows[:0] for rows in s.coarse[:2]), first)
+    state = evaluate(s.problem, np.zeros(2), ())
+    found = replace(s, coarse=among, beside=(None, None, around)).scanned(state, 1, among).best[0]
+    alone = replace(s, coarse=among).scanned(state, 1, among).best[0]
+    assert alone[0] > here.objective
+    assert found[1].row == bead
+    assert found[0] < 0.2 * here.objective
+
+
 def not_at_points(s):
     """The same masses and springs as a kind that sits on patches."""
     c = s.problem.catalogue[0]
@@ -147,11 +162,6 @@ def test_places_that_cost_more_than_is_worth_are_not_looked_at_more_closely():
 def test_a_scan_that_sees_every_place_has_no_neighbourhoods():
     c = searcher(hidden()).problem.catalogue[0]
     assert neighbourhoods(c, EVERY, 1.0) is None
-
-
-def test_tuned_kinds_have_no_neighbourhoods():
-    c = searcher(hidden()).problem.catalogue[2]
-    assert neighbourhoods(c, EVERY[::4], 1.0) is None
 
 
 def test_each_neighbourhood_gives_the_place_that_costs_least():
