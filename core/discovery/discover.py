@@ -32,7 +32,7 @@ from .reduction.elements_and_supports import Structure
 from .reduction.residual_flexibility import Lost
 from .search.coarse_scan import first_places, neighbourhoods
 from .search.completeness import Completeness, completeness
-from .search.footprints import footed, settled
+from .search.footprints import at_the_edge, footed, settled
 from .search.found import Found
 from .search.misshapen import beside_geometry
 from .search.model_selection import (
@@ -240,12 +240,13 @@ def _laid(trial: _Trial, searcher: Searcher, best: Fit) -> tuple[Searcher, Fit]:
     if wide is not searcher:
         with suppress(TrueupError):
             free = polished(trial.own, wide.problem, free)
+            far = at_the_edge(wide, free)
             wide, laid = settled(wide, structure, free)
             if any(wide.problem.catalogue[s.kind].kind.spread_out for s in laid.suspects):
                 wide, laid = reshaped(wide, laid)
             laid = polished(trial.own, wide.problem, laid)
             if scored(wide, laid).score > scored(searcher, best).score:
-                return wide, laid
+                return _laid(trial, wide, laid) if far else (wide, laid)
     return searcher, best
 
 

@@ -129,6 +129,14 @@ def footed(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Search
     return searcher, replace(state, suspects=tuple(suspects))
 
 
+def at_the_edge(searcher: Searcher, state: Fit) -> bool:
+    """Whether the middle of a fitted disc went as far as it may: there is more beyond."""
+    reach = SEARCH.foot_edge * np.array(SEARCH.foot[3][:2])
+    laws = ((s, searcher.problem.catalogue[s.kind].law) for s in state.suspects)
+    discs = (s for s, law in laws if isinstance(law, FootLaw))
+    return any(np.any(np.abs(s.theta[1:3]) > reach) for s in discs)
+
+
 def settled(searcher: Searcher, structure: Structure, state: Fit) -> tuple[Searcher, Fit]:
     """Return a hypothesis with its masses on the discs that were fitted, and one who knows them.
 

@@ -106,6 +106,7 @@ class SearchNumbers:
     equipment_sizes: tuple[float, ...] = number((-0.35, -0.15, 0.0, 0.15), "θ", "with which it starts: what resists being turned is less heavy")
 
     foot: tuple[tuple[float, ...], ...] = number(((0.0, 0.0, -0.36), (0.7, 0.7, 0.7), (0.2, 0.2, 0.2), (1.2, 1.2, 0.8)), "sides of an element, the last of ln radius", "middle and radius of a footprint beforehand, their standard deviations, the units of their largest steps, how far they reach")
+    foot_edge: float = number(0.8, "of how far it reaches", "beyond which the middle of a footprint is at the edge of what was tried")
     foot_step: float = number(0.03, "likewise", "by which shares of grids are differentiated")
     foot_points: int = number(80, "points", "that a disc is laid on the mesh by", "its share at a grid to a few per cent")
     foot_askew: float = number(1e-3, "-", "shear of the plane that a disc is laid on, which tells the diagonals of a square apart", ROUNDING)
