@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 from scipy.spatial import Delaunay
 
+from trueup.core.discovery.effects.candidates import Suspect
+from trueup.core.discovery.effects.effect_laws import MassLaw
 from trueup.core.discovery.search.footprints import (
     FootLaw,
+    at_the_edge,
     shares,
     surroundings,
     surroundings_of_each,
@@ -30,6 +33,18 @@ def test_a_disc_over_the_edge_weighs_on_what_is_there():
     own = shares(Delaunay(GRID), np.array([0.0, 4.0]), 1.0)
     assert own.sum() == pytest.approx(1.0)
     assert (own @ GRID)[0] > 0.2
+
+
+@pytest.mark.parametrize(
+    ("middle", "edge"), [((0.5, -0.5), False), ((0.5, -1.1), True), ((-1.2, 0.0), True)]
+)
+def test_a_middle_that_went_as_far_as_it_may_is_at_the_edge(middle, edge):
+    laws = (MassLaw(), FootLaw(()))
+    searcher = SimpleNamespace(
+        problem=SimpleNamespace(catalogue=[SimpleNamespace(law=law) for law in laws])
+    )
+    suspects = (Suspect(0, 3, (5.0,)), Suspect(1, 0, (-7.0, *middle, 0.2)))
+    assert at_the_edge(searcher, SimpleNamespace(suspects=suspects)) is edge
 
 
 def structure(dimension):
