@@ -79,7 +79,7 @@ def discover(request: Request, progress: Callable[[str], None] = lambda _: None)
     progress("fitting the known parameters")
     bench, trial = _dashpot_off(request, bench, _tried(request, bench, ground, out))
     searcher, found, accepted = _searched(trial, progress)
-    if accepted:
+    if accepted and solves(trial.own, searcher.problem, found.levels[accepted]):
         tested = _judged(bench, trial, searcher, found.levels[accepted])
         if np.any(tested.accused & ~trial.aside):
             progress("searching again without sensors that the completed model accuses")

@@ -72,7 +72,7 @@ def test_late_kinds_are_looked_for_beside_what_does_not_pay_alone(
     tuned = replace(tuned, objective=one.objective + (left or 0.0), misfit=one.misfit)
     grown, states = [], []
 
-    def beside(_, state, *few):
+    def beside(_, state, *simpler, few=0):
         states.append(len(state.suspects))
         return [] if left is None or state.suspects else [tuned]
 
