@@ -7,6 +7,7 @@ import pytest
 from tests.cli.test_far_too_stiff import mast
 
 import trueup
+from trueup.core.discovery import discover
 
 
 @pytest.fixture
@@ -35,3 +36,28 @@ def test_shapes_that_no_mode_has_say_nothing_of_model_or_sensors(deck_and_test):
     assert told.verdict == "undecided"
     assert any("more modes pair" in w for w in told.would_decide)
     assert not told.findings
+
+
+def test_what_does_not_solve_judges_no_sensor(tmp_path, monkeypatch):
+    """What the search accepts first may leave a deck that does not solve; the next best is told."""
+    deck, truth = tmp_path / "mast.bdf", tmp_path / "truth.bdf"
+    deck.write_text(mast(0.0))
+    truth.write_text(mast(1.0e-5))
+    test = tmp_path / "mast.unv"
+    trueup.convert(trueup.solve(truth, number=8), test)
+    judge, judged, asked = discover._judged, [], []
+
+    def unsound(*_):
+        asked.append(True)
+        return len(asked) > 1
+
+    def counted(*args):
+        judged.append(len(asked))
+        return judge(*args)
+
+    monkeypatch.setattr(discover, "solves", unsound)
+    monkeypatch.setattr(discover, "_judged", counted)
+    told = trueup.discover(deck, test, deck_length_unit="mm")
+    assert judged
+    assert min(judged) > 1
+    assert told.findings
